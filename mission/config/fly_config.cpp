@@ -47,7 +47,7 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
     keys.file({"map", "", "map, mesh or scene file to track in; none: the true world"}, c.map);
     keys.count({"flights", "", "flights per planner"}, c.flights, {1., 1e6});
     keys.number({"speed", "m/s", "largest speed"}, c.speed, {0.01, 100.});
-    keys.number({"turn_rate", "rad/s", "largest rate of turns"}, c.turnRate, {0.01, 100.});
+    keys.number({"turn_rate", "rad/s", "largest turn rate (yaw)"}, c.turnRate, {0.01, 100.});
     addImages(keys, c);
     keys.number({"lag", "s", "time constant of the velocity's response to commands"}, c.lag,
                 {0., 10.});

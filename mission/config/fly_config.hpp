@@ -13,7 +13,7 @@ struct FlyConfig {
     std::string plan;       ///< result.json of `photonav plan`, absolute path; empty: a new plan
     unsigned flights = 20;  ///< flights per planner
     double speed = 1.;      ///< largest speed [m/s]
-    double turnRate = 2.;   ///< largest rate of turns [rad/s]
+    double turnRate = 2.;   ///< largest turn rate (yaw) [rad/s]
     double rate = 0.;       ///< image rate [Hz]; 0: one image every planner.ds at full speed
     double latency = 0.05;  ///< delay from exposure to arrival of an image [s]
     double drop = 0.;       ///< share of the images that never arrive

@@ -29,8 +29,8 @@ constexpr int kMostMonocularSteps = 6;
 constexpr double kWait = 1.;
 /// Heading of a robot that faces a place [rad].
 constexpr double kLooksThere = 0.1;
-/// Longest turn toward a place [s].
-constexpr double kLongestLook = 5.;
+/// Longest turn toward a place, beyond the time of half a turn [s].
+constexpr double kLongestLook = 2.;
 /// Longest improvement of a plan in real time [s].
 constexpr double kPlanTime = 0.5;
 
@@ -298,7 +298,8 @@ void Explorer::follow(FlyablePart part) {
 /// A robot between two ways that are as good as each other would turn to and fro: it first looks
 /// where it began to look.
 bool Explorer::isLooking() const {
-    if (!look_ || time_ - look_->since > kLongestLook) return false;
+    const double longest = kLongestLook + std::numbers::pi / config_.fly.turnRate;
+    if (!look_ || time_ - look_->since > longest) return false;
     const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
     return std::abs(turn) > kLooksThere;
 }

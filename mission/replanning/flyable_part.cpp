@@ -75,19 +75,33 @@ std::optional<std::vector<PlannedView>> lookAt(const Eigen::Vector3d& p_w,
     return plan;
 }
 
-/// Turns the headings of a plan on the way, so that the robot has a place in view where the plan
-/// ends and need not stop there to look. As late as it can: a heading may also differ by as much as
+/// Turns the headings of a plan on the way, so that at its end a place is in view and the robot
+/// need not stop there to look. A heading may differ from the direction of that place by as much as
 /// the robot turns on the rest of the plan.
 void turnOnTheWay(std::vector<PlannedView>& plan, const Eigen::Vector3d& p_w,
                   const SpaceAhead& space) {
-    const Eigen::Vector3d end = plan.back().T_w_b.translation();
-    for (std::size_t i = 1; i < plan.size(); ++i) {
-        const auto turn = turnToward(p_w, end, yawOf(plan[i].T_w_b));
+    const PlannedView end = plan.back();
+    const auto apart = [](double a, double b) {
+        return std::abs(std::remainder(a - b, 2. * std::numbers::pi));
+    };
+    // Headings from the direction of the place [rad]: once the robot has begun to turn by one side,
+    // it goes on by that side.
+    double before = 0., side = 0.;
+    for (PlannedView& view : plan) {
+        const auto turn = turnToward(p_w, end.T_w_b.translation(), yawOf(view.T_w_b));
         if (!turn) return;
-        const double rest = plan.back().distance - plan[i].distance;
-        const double most = space.inView + rest * space.turnPerMetre;
-        const double missing = *turn - std::clamp(*turn, -most, most);
-        plan[i].T_w_b.rotate(Eigen::AngleAxisd(missing, Eigen::Vector3d::UnitZ()));
+        const double planned = -*turn;
+        const double most = space.inView + (end.distance - view.distance) * space.turnPerMetre;
+        if (std::abs(planned) <= most || view.distance == plan.front().distance) {
+            before = planned;
+            side = 0.;
+            continue;
+        }
+        const auto change = [&](double to) { return apart(to, before) + apart(to, planned); };
+        if (side == 0.) side = change(most) < change(-most) ? 1. : -1.;
+        before = side * most;
+        view.T_w_b.rotate(Eigen::AngleAxisd(before - planned, Eigen::Vector3d::UnitZ()));
+        view.isWaypoint = view.distance == end.distance;  // the plan relied on another image
     }
 }
 

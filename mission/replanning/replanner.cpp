@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replanning/replanner.hpp"
 
+#include <numbers>
+
 #include "flight/flight_setup.hpp"
 #include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
@@ -22,14 +24,16 @@ double asWideAsBody(const Camera& camera, double radius) {
 
 SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlanner& kind) {
     const bool isAhead = looksAhead(config.camera.T_b_c());
-    const Camera camera = config.camera.camera();
     return {.clearance = {},  // see flyableWay()
             .isSeen = [&map](const Eigen::Vector3d& p_w) { return map.isSeen(p_w); },
             .radius = config.robotRadius,
             .hidden = isAhead ? kHidden : 0.,
             .canLook =
                 isAhead && config.space != StateKind::position && kind.headings != Headings::fixed,
-            .inView = kInView * std::atan2(0.5 * camera.width, camera.fx()),
+            // Headings along the motion stay so.
+            .inView = kind.headings == Headings::forward
+                          ? std::numbers::pi
+                          : kInView * 0.5 * config.camera.hfov * kDegree,
             .turnPerMetre = config.fly.turnRate / config.fly.speed};
 }
 

@@ -60,7 +60,9 @@ UncertainPose SimulatedMav::step(const BodyVelocity& command, double dt) {
     const double lag = options_.lag;
     const double left = lag > 0. ? std::exp(-dt / lag) : 0.;
     const double mean = lag > 0. ? lag / dt * (1. - left) : 0.;
-    const auto respond = [&](auto now, auto wanted) { return wanted + (now - wanted) * left; };
+    const auto respond = [&](const auto& now, const auto& wanted) {
+        return wanted + (now - wanted) * left;
+    };
     // A body that turns keeps its velocity in the world.
     const Eigen::Vector3d wanted_w = T_w_b_.linear() * command.linear;
     Eigen::Vector3d motion_w = dt * (wanted_w + mean * (velocity_w_ - wanted_w));

@@ -15,7 +15,7 @@ struct MotionLimits {
 
 /// Brings a command within the velocity limits, keeping its direction, and to what can be reached
 /// from the last command within `dt` seconds.
-/// @param last in the same axes as `wanted`: those of the body now, not those when it was given
+/// @param last the last command, turned into the present axes of the body
 BodyVelocity limited(const BodyVelocity& wanted, const BodyVelocity& last,
                      const MotionLimits& limits, double dt);
 

@@ -112,7 +112,7 @@ class Pilot {
     std::optional<Route> wayBack_;       ///< to that view, while tracking is lost
     bool hasMissedGoal_ = false;  ///< the belief reached the goal, but was not certain enough
     BodyVelocity command_;
-    Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // of the body at that command
+    Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // R_w_b believed at that command
     std::optional<double> atGoalSince_;                   ///< [s]
     std::optional<BodyVelocity> onImage_;  ///< velocity by photometric servoing at the goal
     int smallSteps_ = 0;  ///< consecutive small displacements from the goal's image

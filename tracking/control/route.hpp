@@ -24,8 +24,8 @@ struct RouteOptions {
     MotionLimits limits = {};
     /// Share of the acceleration limits that the route uses; the rest is left to corrections.
     double accelerationShare = 0.75;
-    /// Time constant of the body's response to commands [s]. The velocity of the route is ahead by
-    /// this time.
+    /// Time constant with which the body's velocity in the world responds to commands [s]. The
+    /// velocity of the route is ahead by this time.
     double responseTime = 0.25;
     PathTolerance tolerance = {};  ///< largest distance of the smooth path from the plan
     /// The believed position counts as on the route within toleranceSigmas of its standard

@@ -88,7 +88,7 @@ const kNames = {
   camera_period_s: ['Time between images', 's'], drift_mps: ['Drift of the velocity, 1σ', 'm/s'],
   least_sigma: ['Least standard deviation of an alignment, position and rotation', 'm, rad'],
   scale: ['Factor on the information of an alignment', ''], max_speed_mps: ['Largest speed', 'm/s'],
-  max_turn_rate_radps: ['Largest rate of turns', 'rad/s'],
+  max_turn_rate_radps: ['Largest turn rate', 'rad/s'],
   odometry_factor: ['True odometry variance divided by the assumed one', ''], velocity_lag_s: ['Lag of the velocity', 's'],
   'flight.photometric_goal': ['Servoing on the image of the goal', ''], body_radius_m: ['Radius of the robot', 'm'],
   end: ['End of the flight', ''], reason: ['Reason', ''], length_m: ['Length', 'm'], wall_s: ['Computing time of the first flight', 's'],

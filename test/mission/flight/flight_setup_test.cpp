@@ -17,9 +17,10 @@ FlightOptions optionsFor(const std::vector<std::string>& settings) {
 }
 
 TEST(FlightSetup, FliesUnderTheConditionsOfTheConfig) {
-    const FlightOptions options = optionsFor(
-        {"fly.rate=8", "fly.latency=0.4", "fly.drop=0.1", "fly.blackout=[3, 2]", "fly.speed=0.5",
-         "fly.odometry=4", "fly.lag=0.1", "fly.drift=0.05", "seed=7", "robot.radius=0.3"});
+    const FlightOptions options =
+        optionsFor({"fly.rate=8", "fly.latency=0.4", "fly.drop=0.1", "fly.blackout=[3, 2]",
+                    "fly.speed=0.5", "fly.turn_rate=0.7", "fly.odometry=4", "fly.lag=0.1",
+                    "fly.drift=0.05", "seed=7", "robot.radius=0.3"});
     EXPECT_DOUBLE_EQ(options.robot.camera.period, 1. / 8.);
     EXPECT_EQ(options.robot.camera.latency, 0.4);
     EXPECT_EQ(options.robot.camera.dropRate, 0.1);
@@ -29,6 +30,7 @@ TEST(FlightSetup, FliesUnderTheConditionsOfTheConfig) {
     EXPECT_EQ(options.robot.body.lag, 0.1);
     EXPECT_EQ(options.robot.body.drift, 0.05);
     EXPECT_EQ(options.pilot.route.limits.maxSpeed, 0.5);
+    EXPECT_EQ(options.pilot.route.limits.maxYawRate, 0.7);
     EXPECT_EQ(options.bodyRadius, 0.15);
     EXPECT_EQ(options.arrivalTolerance, 0.3);
     EXPECT_EQ(options.seed, 7U);

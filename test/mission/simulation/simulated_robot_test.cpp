@@ -22,9 +22,6 @@ TEST(SimulatedMav, FollowsCommandsWithALag) {
 /// Without new commands to the side, a body that turns flies straight on.
 TEST(SimulatedMav, KeepsItsVelocityInTheWorldWhileItTurns) {
     SimulatedMav mav(Pose::Identity(), {.lag = 1e3}, 1);
-    SimulatedMav obedient(Pose::Identity(), {.lag = 0.}, 1);
-    obedient.step({{1., 0., 0.}, 0.}, 0.1);
-    EXPECT_TRUE(obedient.T_w_b().translation().isApprox(Eigen::Vector3d(0.1, 0., 0.)));
     for (int i = 0; i < 100; ++i) mav.step({{1e3, 0., 0.}, 0.}, 0.01);  // to 1 m/s
     const Eigen::Vector3d before = mav.velocity().linear;
     for (int i = 0; i < 100; ++i) mav.step({mav.velocity().linear, 2e3}, 0.01);
