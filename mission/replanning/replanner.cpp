@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replanning/replanner.hpp"
 
-#include <numbers>
-
 #include "flight/flight_setup.hpp"
 #include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
@@ -12,8 +10,6 @@ namespace {
 
 /// Radius around the robot that a camera that looks ahead does not observe [m].
 constexpr double kHidden = 0.3;
-/// Share of half the angle of view that counts as in view.
-constexpr double kInView = 0.8;
 
 /// How far ahead the view becomes as wide as the body [m].
 double asWideAsBody(const Camera& camera, double radius) {
@@ -29,12 +25,7 @@ SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlan
             .radius = config.robotRadius,
             .hidden = isAhead ? kHidden : 0.,
             .canLook =
-                isAhead && config.space != StateKind::position && kind.headings != Headings::fixed,
-            // Headings along the motion stay so.
-            .inView = kind.headings == Headings::forward
-                          ? std::numbers::pi
-                          : kInView * 0.5 * config.camera.hfov * kDegree,
-            .turnPerMetre = config.fly.turnRate / config.fly.speed};
+                isAhead && config.space != StateKind::position && kind.headings != Headings::fixed};
 }
 
 std::vector<Eigen::Vector2d> waypointsFromAbove(const std::vector<BeliefPoint>& path) {
