@@ -66,6 +66,11 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                  "information of views of space that was never seen: `none` (the paper), "
                  "or `predicted` from the latest views of the flight"},
                 c.unknownInformation, {"none", "predicted"});
+    keys.choice({"look", "",
+                 "where the robot turns to what it has not seen: where its free way ends "
+                 "(`stopped`), or already on the way there (`flying`): faster, but with other "
+                 "headings than planned, and so less certain"},
+                c.look, {"stopped", "flying"});
     keys.number(
         {"keyframe_distance", "m", "an image is fused at this distance from the last fused one"},
         c.keyframeDistance, {0.01, 10.});

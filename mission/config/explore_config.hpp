@@ -23,6 +23,10 @@ enum class UnknownInformation {
     predicted  ///< the average over the latest views of the flight (UnseenInformation)
 };
 
+/// Where a robot turns to what it has not seen: where its way that is known to be free ends, with
+/// planned headings until there, or on its way to that place.
+enum class LookAhead { stopped, flying };
+
 /// Edge of the cells of an exploration's map: the smallest, the largest, and the default. Smaller
 /// cells make positions more exact and updates slower [m].
 inline constexpr double kLeastExploreCell = 0.01, kMostExploreCell = 0.5, kExploreCell = 0.035;
@@ -50,6 +54,7 @@ struct ExploreConfig {
     std::optional<double> resolution;
     UnknownSpace unknown = UnknownSpace::optimistic;
     UnknownInformation unknownInformation = UnknownInformation::none;
+    LookAhead look = LookAhead::stopped;
     // An image is fused if one of the three conditions holds.
     double keyframeDistance = 0.25;  ///< distance from the last fused image [m]
     double keyframeAngle = 0.2;      ///< rotation since the last fused image [rad]

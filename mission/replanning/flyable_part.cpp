@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replanning/flyable_part.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -56,16 +57,52 @@ std::vector<PlannedView> cut(const std::vector<PlannedView>& plan, double length
     return begin;
 }
 
+/// The turn from a heading to the direction of a place [rad]; nothing for a place above or below.
+std::optional<double> turnToward(const Eigen::Vector3d& p_w, const Eigen::Vector3d& from_w,
+                                 double yaw) {
+    const Eigen::Vector2d way = (p_w - from_w).head<2>();
+    if (way.norm() < kStep) return {};
+    return std::remainder(std::atan2(way.y(), way.x()) - yaw, 2. * std::numbers::pi);
+}
+
 /// A turn on the spot toward a place; nothing where the robot faces it already.
 std::optional<std::vector<PlannedView>> lookAt(const Eigen::Vector3d& p_w,
                                                const PlannedView& here) {
-    const Eigen::Vector3d way = p_w - here.T_w_b.translation();
-    const double turn =
-        std::remainder(std::atan2(way.y(), way.x()) - yawOf(here.T_w_b), 2. * std::numbers::pi);
-    if (std::abs(turn) < kFacing || way.head<2>().norm() < kStep) return {};
+    const auto turn = turnToward(p_w, here.T_w_b.translation(), yawOf(here.T_w_b));
+    if (!turn || std::abs(*turn) < kFacing) return {};
     auto plan = hovering(here.T_w_b, here.covariance);
-    plan.back().T_w_b.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+    plan.back().T_w_b.rotate(Eigen::AngleAxisd(*turn, Eigen::Vector3d::UnitZ()));
     return plan;
+}
+
+/// Turns the headings of a plan on the way, so that at its end a place is in view and the robot
+/// need not stop there to look. A heading may differ from the direction of that place by as much as
+/// the robot turns on the rest of the plan.
+void turnOnTheWay(std::vector<PlannedView>& plan, const Eigen::Vector3d& p_w,
+                  const SpaceAhead& space) {
+    const PlannedView end = plan.back();
+    const auto apart = [](double a, double b) {
+        return std::abs(std::remainder(a - b, 2. * std::numbers::pi));
+    };
+    // Headings from the direction of the place [rad]: once the robot has begun to turn by one side,
+    // it goes on by that side.
+    double before = 0., side = 0.;
+    for (PlannedView& view : plan) {
+        const auto turn = turnToward(p_w, end.T_w_b.translation(), yawOf(view.T_w_b));
+        if (!turn) return;
+        const double planned = -*turn;
+        const double most = space.inView + (end.distance - view.distance) * space.turnPerMetre;
+        if (std::abs(planned) <= most || view.distance == plan.front().distance) {
+            before = planned;
+            side = 0.;
+            continue;
+        }
+        const auto change = [&](double to) { return apart(to, before) + apart(to, planned); };
+        if (side == 0.) side = change(most) < change(-most) ? 1. : -1.;
+        before = side * most;
+        view.T_w_b.rotate(Eigen::AngleAxisd(before - planned, Eigen::Vector3d::UnitZ()));
+        view.isWaypoint = view.distance == end.distance;  // the plan relied on another image
+    }
 }
 
 }  // namespace
@@ -154,6 +191,7 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
         // Not even what lies beyond the hidden places was seen.
         way.isBlind = space.hidden > 0. && seen < space.hidden + kStep && seen <= free;
         way.plan = cut(plan, std::min({seen, free, whole}));
+        if (space.canLook && seen <= free) turnOnTheWay(way.plan, newPlace, space);
     } else {
         way.isBlind = true;
         way.plan = cut(plan, std::min({kBlindStep, free, whole}));

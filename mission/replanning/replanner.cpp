@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replanning/replanner.hpp"
 
+#include <numbers>
+
 #include "flight/flight_setup.hpp"
 #include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
@@ -10,6 +12,8 @@ namespace {
 
 /// Radius around the robot that a camera that looks ahead does not observe [m].
 constexpr double kHidden = 0.3;
+/// Share of half the angle of view that counts as in view.
+constexpr double kInView = 0.8;
 
 /// How far ahead the view becomes as wide as the body [m].
 double asWideAsBody(const Camera& camera, double radius) {
@@ -20,12 +24,17 @@ double asWideAsBody(const Camera& camera, double radius) {
 
 SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlanner& kind) {
     const bool isAhead = looksAhead(config.camera.T_b_c());
+    // Headings along the motion stay so.
+    const bool isTurning =
+        config.explore.look == LookAhead::flying && kind.headings != Headings::forward;
     return {.clearance = {},  // see flyableWay()
             .isSeen = [&map](const Eigen::Vector3d& p_w) { return map.isSeen(p_w); },
             .radius = config.robotRadius,
             .hidden = isAhead ? kHidden : 0.,
             .canLook =
-                isAhead && config.space != StateKind::position && kind.headings != Headings::fixed};
+                isAhead && config.space != StateKind::position && kind.headings != Headings::fixed,
+            .inView = isTurning ? kInView * 0.5 * config.camera.hfov * kDegree : std::numbers::pi,
+            .turnPerMetre = config.fly.turnRate / config.fly.speed};
 }
 
 std::vector<Eigen::Vector2d> waypointsFromAbove(const std::vector<BeliefPoint>& path) {

@@ -176,6 +176,21 @@ TEST_F(RoomToExplore, AnticipatesObstaclesWhereItHasNotSeen) {
 }
 
 /// A wall across the whole room: right and left are as good as each other, at every update anew.
+/// RRT* plans random headings: a robot that keeps them has to stop and turn to see its way.
+TEST_F(RoomToExplore, IsFasterIfItLooksWhileItFlies) {
+    double stopped = 0., flying = 0.;
+    for (const std::uint32_t seed : {1U, 2U}) {
+        for (const LookAhead look : {LookAhead::stopped, LookAhead::flying}) {
+            config.explore.look = look;
+            const ExplorationResult flight = flown(test::roomToExplore(), seed);
+            EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+            EXPECT_GT(flight.leastClearance, 0.125);
+            (look == LookAhead::flying ? flying : stopped) += flight.duration;
+        }
+    }
+    EXPECT_LT(flying, 0.9 * stopped);
+}
+
 TEST_F(RoomToExplore, DoesNotLookToAndFroForEver) {
     Scene split = test::greyRoom();
     addBox(split, {5., 0., 0.}, {5.2, 4., 3.}, addTexture(split, valueNoise({.seed = 3})));

@@ -92,6 +92,52 @@ TEST(FlyablePart, TurnsToLookFirst) {
     EXPECT_NEAR(endOf(flyablePart(straightPath(2.), space)), 0.3, 0.06);
 }
 
+/// A robot that flew up to the end of what it has seen with its back to it would stop there to
+/// turn.
+TEST(FlyablePart, TurnsOnTheWayToHaveInViewWhatWasNotSeen) {
+    SpaceAhead space = openSpace();
+    space.isSeen = [](const Vector3d& p_w) { return p_w.x() < 3.3; };
+    space.inView = 0.5;
+    space.turnPerMetre = 1.;
+    const FlyablePart way = flyablePart(straightPath(2.), space);
+    EXPECT_NEAR(endOf(way), 3., 0.06);
+    for (const PlannedView& view : way.plan) {
+        const double rest = endOf(way) - view.T_w_b.translation().x();
+        EXPECT_NEAR(yawOf(view.T_w_b), std::min(2., 0.5 + rest), 0.05) << rest;
+    }
+    space.canLook = false;
+    EXPECT_NEAR(yawOf(flyablePart(straightPath(2.), space).plan.back().T_w_b), 2., 1e-9);
+}
+
+/// Planned headings that pass the direction away from the place do not turn the robot to and fro.
+TEST(FlyablePart, TurnsOnTheWayByOneSide) {
+    SpaceAhead space = openSpace();
+    space.isSeen = [](const Vector3d& p_w) { return p_w.x() < 3.3; };
+    space.inView = 0.5;
+    space.turnPerMetre = 1.;
+    std::vector<PlannedView> plan = straightPath(0.);
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        plan[i].T_w_b = levelPose({plan[i].distance, 0., 1.}, 2.6 + 0.2 * static_cast<double>(i));
+    }
+    plan.insert(plan.begin(), plan.front());  // plans begin with two views at the robot's pose
+    const FlyablePart way = flyablePart(plan, space);
+    EXPECT_EQ(yawOf(way.plan[1].T_w_b), yawOf(way.plan[0].T_w_b)) << "it begins as it is turned";
+    for (std::size_t i = 2; i < way.plan.size(); ++i) {
+        EXPECT_LE(yawOf(way.plan[i].T_w_b), yawOf(way.plan[i - 1].T_w_b) + 0.21);
+        EXPECT_GT(yawOf(way.plan[i].T_w_b), 0.45);
+    }
+    EXPECT_NEAR(yawOf(way.plan.back().T_w_b), 0.5, 0.05);
+}
+
+/// It keeps its heading before an obstacle, which it has seen.
+TEST(FlyablePart, DoesNotTurnToAnObstacle) {
+    SpaceAhead space = openSpace();
+    space.clearance = [](const Vector3d& p_w) { return 3. - p_w.x(); };
+    const FlyablePart way = flyablePart(straightPath(2.), space);
+    EXPECT_LT(endOf(way), 3.);
+    EXPECT_NEAR(yawOf(way.plan.back().T_w_b), 2., 1e-9);
+}
+
 /// A camera that looks along the path does not see what is right beside its begin.
 TEST(FlyablePart, LooksAtThePlaceThatWasNotSeen) {
     SpaceAhead space = openSpace();
