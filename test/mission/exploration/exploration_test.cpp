@@ -175,7 +175,6 @@ TEST_F(RoomToExplore, AnticipatesObstaclesWhereItHasNotSeen) {
     EXPECT_NE(lower.reason.find("seen to be free"), std::string::npos) << lower.reason;
 }
 
-/// A wall across the whole room: right and left are as good as each other, at every update anew.
 /// RRT* plans random headings: a robot that keeps them has to stop and turn to see its way.
 TEST_F(RoomToExplore, IsFasterIfItLooksWhileItFlies) {
     double stopped = 0., flying = 0.;
@@ -191,6 +190,7 @@ TEST_F(RoomToExplore, IsFasterIfItLooksWhileItFlies) {
     EXPECT_LT(flying, 0.9 * stopped);
 }
 
+/// A wall across the whole room: right and left are as good as each other, at every update anew.
 TEST_F(RoomToExplore, DoesNotLookToAndFroForEver) {
     Scene split = test::greyRoom();
     addBox(split, {5., 0., 0.}, {5.2, 4., 3.}, addTexture(split, valueNoise({.seed = 3})));
