@@ -20,6 +20,7 @@ using simd::kWidth;
 constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
 constexpr std::size_t kSampleEvery = 4;  ///< residuals of every n-th chunk are kept
 constexpr std::size_t kNoiseEvery = 16;  ///< noise is estimated from every n-th point
+constexpr float kLeastMeasured = 2.5F;  ///< of 2 x 2 depths: otherwise the pixel shows other things
 
 double square(double x) { return x * x; }
 
@@ -125,7 +126,7 @@ ImageF halvedDepth(const ImageF& depth, float spread) {
         const Float farthest = simd::max(simd::max(a, b), simd::max(c, d));
         const Float count = (isThere(a) + isThere(b)) + (isThere(c) + isThere(d));
         const Float mean = ((a + b) + (c + d)) / simd::max(count, one);
-        return farthest <= nearest * (1.F + spread) ? mean : zero;
+        return (farthest <= nearest * (1.F + spread)) & (count > kLeastMeasured) ? mean : zero;
     };
     for (unsigned v = 0; v < half.getHeight(); ++v) {
         halveRows(depth[2 * v], depth[2 * v + 1], half[v], half.getWidth(), merge);

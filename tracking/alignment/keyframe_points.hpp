@@ -15,7 +15,8 @@ namespace photonav {
 ImageF halvedByMean(const ImageF& image);
 
 /// The depth image at half the size: mean of the measured depths among 2 x 2 pixels; 0 if they
-/// differ by more than `spread` times the smallest, or if there is none.
+/// differ by more than `spread` times the smallest, or if two or more are not measured: most of the
+/// grey value of such a pixel may be that of something else, as at the border of an object.
 ImageF halvedDepth(const ImageF& depth, float spread);
 
 /// The points of one level of a keyframe.

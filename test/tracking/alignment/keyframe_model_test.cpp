@@ -45,6 +45,35 @@ TEST(KeyframeModel, FindsTheMotion) {
     }
 }
 
+/// At the border of an object before a background without depth, pixels of half the size show both.
+/// They would draw the object inward.
+TEST(KeyframeModel, BordersOfAnObjectDoNotDisplaceIt) {
+    Scene scene;
+    const auto texture = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 4}));
+    addBox(scene, {2., -0.6, 0.8}, {2.5, 0.1, 1.5}, texture);
+    addBox(scene, {2.6, 0.3, 1.1}, {3.1, 0.8, 1.6}, texture);
+    const MeshRenderer objects(scene);
+    const auto seen = [&](const Pose& T_c_w) {
+        View view;
+        objects.render(wideCamera(), T_c_w, view);
+        for (unsigned i = 0; i < view.depth.getSize(); ++i) {
+            if (view.depth.bitmap[i] == 0.F) view.intensity.bitmap[i] = 0.05F;
+        }
+        return view;
+    };
+    const Pose first = lookFrom({0.5, 0., 1.3}, 0., 0.05);
+    KeyframeModel keyframe(seen(first), wideCamera(), first);
+    std::mt19937_64 random(1);
+    double sum = 0.;
+    for (int i = 0; i < 10; ++i) {
+        const Pose truth = expSE3(test::randomTwist(0.03, 0.02, random)) * first;
+        const Alignment a = keyframe.align(seen(truth).intensity, first);
+        EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+        sum += errorOf(a, truth).head<3>().norm();
+    }
+    EXPECT_LT(sum / 10., 3e-3);
+}
+
 TEST(KeyframeModel, LeavesOutDepthThatBends) {
     View view = roomView(kFirst);
     for (unsigned v = 60; v < 180; ++v) {  // half the image: every other column is too far
