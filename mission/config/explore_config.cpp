@@ -62,14 +62,17 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                  "space that was never seen: `optimistic` plans lead through it, "
                  "`pessimistic` plans do not"},
                 c.unknown, {"optimistic", "pessimistic"});
-    keys.choice({"unknown_information", "",
-                 "information of views of space that was never seen: `none` (the paper), "
-                 "or `predicted` from the latest views of the flight"},
-                c.unknownInformation, {"none", "predicted"});
+    keys.choice(
+        {"unknown_information", "",
+         "information of views of space that was never seen: `none` (the paper), "
+         "or `predicted`, by the angle to the horizon, from what the view shows beside it and "
+         "from the latest views of the flight"},
+        c.unknownInformation, {"none", "predicted"});
     keys.choice({"look", "",
                  "where the robot turns to what it has not seen: where its free way ends "
                  "(`stopped`), or already on the way there (`flying`): faster, but with other "
-                 "headings than planned, and so less certain"},
+                 "headings than planned, and so less certain. No effect with a camera that looks "
+                 "down, and with headings that are fixed or along the motion"},
                 c.look, {"stopped", "flying"});
     keys.number(
         {"keyframe_distance", "m", "an image is fused at this distance from the last fused one"},

@@ -20,7 +20,7 @@ enum class UnknownSpace { optimistic, pessimistic };
 /// The information that planners assume for views of space that was never observed.
 enum class UnknownInformation {
     none,      ///< no information, as in the paper
-    predicted  ///< the average over the latest views of the flight (UnseenInformation)
+    predicted  ///< as what was seen beside it and in the latest views (UnseenInformation)
 };
 
 /// Where a robot turns to what it has not seen: where its way that is known to be free ends, with

@@ -75,7 +75,7 @@ MapChange OnlineMap::whole() const {
 
 void OnlineMap::compare(const View& shown, const ImageF& image, const Camera& camera) {
     noise_.observe(shown, image, camera);
-    if (unseen_) unseen_->observe(shown, noise_.model(camera, photometric_)(shown));
+    if (unseen_) unseen_->observe(shown, noise_.model(camera, photometric_));
 }
 
 MapChange OnlineMap::add(const MapInput& input, const Camera& camera, const IsStopped& isStopped) {
