@@ -256,6 +256,8 @@ ReplayRun Replay::run(const IsStopped& isStopped,
                       const std::function<void(std::size_t)>& progress) const {
     ReplayRun run = replay(recording_, makeTracker(isStopped), isStopped, progress);
     if (options_.odometry) alignToTruth(run);
+    run.truthCovariance.diagonal().head<3>().setConstant(std::pow(options_.truthSigma, 2));
+    run.truthCovariance.diagonal().tail<3>().setConstant(std::pow(options_.truthSigmaRotation, 2));
     return run;
 }
 

@@ -31,6 +31,12 @@ void addKeys(KeyTable& keys, ReplayOptions& o) {
                 "map, one halving in odometry"},
                o.maxWidth, {1. * kLeastWidth, 1e6});
     keys.flag({"exposure", "", "estimate gain and offset of every image"}, o.exposure);
+    keys.number({"truth_sigma", "m",
+                 "standard deviation of the recording's true positions, per axis; it counts where "
+                 "errors are compared with covariances (NEES)"},
+                o.truthSigma, {0., 1.});
+    keys.number({"truth_sigma_rotation", "rad", "the same of the true rotations, per axis"},
+                o.truthSigmaRotation, {0., 1.});
 }
 
 }  // namespace photonav

@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay/replay_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "geometry/se3.hpp"
 
 namespace photonav {
 namespace {
+
+/// Covariance of the difference of a belief and its true pose by the errors of true poses: of this
+/// one, and of the one at which odometry was made equal to the truth.
+Matrix6 covarianceByTruth(const ReplayRun& run, const Pose& T_c_w) {
+    const auto tie = std::ranges::find_if(
+        run.frames, [&](const ReplayedFrame& frame) { return run.alignedFrame == frame.index; });
+    if (tie == run.frames.end()) return run.truthCovariance;
+    const Matrix6 toCamera = adjoint(T_c_w * tie->tracked.T_c_w.mean.inverse());
+    return run.truthCovariance + toCamera * run.truthCovariance * toCamera.transpose();
+}
 
 EvaluatedFrame evaluateFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
     const ReplayedFrame& frame = run.frames[i];
@@ -17,7 +30,12 @@ EvaluatedFrame evaluateFrame(const ReplayRun& run, std::size_t i, bool beginsTru
     result.rotationError = errors.rotation[0];
     result.positionSigma = std::sqrt(belief.covariance.diagonal().head<3>().sum());
     result.rotationSigma = std::sqrt(belief.covariance.diagonal().tail<3>().sum());
-    if (beginsTrue) result.normalised = normalisedError(belief, *frame.truth_c_w);
+    const bool isEqual = run.alignedFrame == frame.index;  // by definition
+    if (beginsTrue && !isEqual) {
+        result.normalised =
+            normalisedError({belief.mean, belief.covariance + covarianceByTruth(run, belief.mean)},
+                            *frame.truth_c_w);
+    }
     return result;
 }
 

@@ -29,7 +29,8 @@ json optionsJson(const ReplayOptions& o) {
             {"least_sigma", {*o.leastSigma, *o.leastSigmaRotation}},
             {"min_overlap", o.minOverlap},
             {"max_width", o.maxWidth ? json(*o.maxWidth) : json(nullptr)},
-            {"exposure", o.exposure}};
+            {"exposure", o.exposure},
+            {"truth_sigma", {o.truthSigma, o.truthSigmaRotation}}};
 }
 
 json datasetJson(const Replay& replay) {

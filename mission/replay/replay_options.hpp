@@ -33,6 +33,9 @@ struct ReplayOptions : RecordingOptions {
     /// in a map, one halving in odometry.
     std::optional<int> maxWidth;
     bool exposure = true;  ///< estimate gain and offset of every image
+    /// Standard deviations of the recording's true poses, per axis: position [m] and rotation
+    /// [rad]. They count where errors are compared with covariances.
+    double truthSigma = 0., truthSigmaRotation = 0.;
 };
 
 }  // namespace photonav

@@ -46,9 +46,10 @@ struct ReplayRun {
     int halvings = 0;       ///< see ReplayTracker
     double blur = 0.;       ///< see ReplayTracker [pixels]
     std::vector<ReplayedFrame> frames;
-    std::vector<ReplayStrip> strips;          ///< about forty frames, evenly spread
-    std::optional<std::size_t> alignedFrame;  ///< index of the frame at which alignToTruth() made
-                                              ///< the estimate equal to the ground truth
+    Matrix6 truthCovariance = Matrix6::Zero();  ///< of every true pose, camera frame
+    std::vector<ReplayStrip> strips;            ///< about forty frames, evenly spread
+    std::optional<std::size_t> alignedFrame;    ///< index of the frame at which alignToTruth() made
+                                                ///< the estimate equal to the ground truth
     std::string stopped;  ///< why tracking gave up before the last frame; empty if it did not
     bool interrupted = false;
     double loadSeconds = 0.;   ///< wall-clock time of loading images and of stereo matching [s]

@@ -118,7 +118,7 @@ const kNames = {
   max_range: ['Farthest depth mapped', 'm'], occupied: ['Occupied cells', ''], free: ['Free cells', ''],
   depth_error: ['Error of depth that repeats, share of the motion', '%'], depth_error_assumed: ['Error of depth assumed', ''],
   depth_noise_m: ['Noise of depth at 1 m, 1σ', 'm'], median_depth_m: ['Median depth', 'm'], layout: ['Layout of the files', ''],
-  sigma: ['Image noise, 1σ', 'grey\u00a0values'], start_sigma: ['Start pose, 1σ', 'm, rad'], min_overlap: ['Least overlap with the map', '%'],
+  sigma: ['Image noise, 1σ', 'grey\u00a0values'], start_sigma: ['Start pose, 1σ', 'm, rad'], truth_sigma: ['True poses, 1σ', 'm, rad'], min_overlap: ['Least overlap with the map', '%'],
   exposure: ['Exposure estimated', ''], mode: ['Tracking by', ''], tolerance_s: ['Largest difference of timestamps', 's'],
   fuse_s: ['Fusing images into the map', 's'], fuse_per_frame_s: ['Fusing one image', 's'], compare_s: ['Comparing with the images', 's'],
   load_images_s: ['Loading images', 's'], read_s: ['Reading the recording', 's'], write_s: ['Writing the map', 's'],

@@ -165,6 +165,24 @@ TEST(AlignmentErrors, AreOfTheKeyframeAlignedTo) {
     EXPECT_NEAR(alignmentErrors(run)[1].xi.x(), -0.3, 1e-12);
 }
 
+/// By odometry the true pose at which the estimate begins is wrong as well.
+TEST(ReplayErrors, CountTheErrorsOfTruePoses) {
+    ReplayRun run;
+    run.frames = {trackedAt(1., 0., 0., 1.), trackedAt(2., 1.03, 1., 1.)};
+    for (ReplayedFrame& frame : run.frames) {
+        frame.tracked.T_c_w.covariance = 1e-4 * Matrix6::Identity();
+    }
+    run.frames[1].index = 1;
+    const auto nees = [&] { return evaluate(run).frames.back().normalised->pose; };
+    EXPECT_NEAR(nees(), 9. / 6., 1e-6);
+    run.truthCovariance.diagonal().head<3>().setConstant(1e-4);
+    EXPECT_NEAR(nees(), 4.5 / 6., 1e-6);
+    run.odometry = true;
+    run.alignedFrame = 0;
+    EXPECT_NEAR(nees(), 3. / 6., 1e-6);
+    EXPECT_FALSE(evaluate(run).frames.front().normalised);
+}
+
 TEST_F(ReplayFixture, TheStartCanBeGiven) {
     useMap();
     fs::remove(data / "groundtruth.txt");
