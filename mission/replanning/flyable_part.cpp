@@ -78,8 +78,9 @@ std::optional<std::vector<PlannedView>> lookAt(const Eigen::Vector3d& p_w,
 /// Turns the headings of a plan on the way, so that at its end a place is in view and the robot
 /// need not stop there to look. A heading may differ from the direction of that place by as much as
 /// the robot turns on the rest of the plan.
-void turnOnTheWay(std::vector<PlannedView>& plan, const Eigen::Vector3d& p_w,
-                  const SpaceAhead& space) {
+/// @param inView, turnPerMetre as SpaceAhead has them
+void turnOnTheWay(std::vector<PlannedView>& plan, const Eigen::Vector3d& p_w, double inView,
+                  double turnPerMetre) {
     const PlannedView end = plan.back();
     const auto apart = [](double a, double b) {
         return std::abs(std::remainder(a - b, 2. * std::numbers::pi));
@@ -91,7 +92,7 @@ void turnOnTheWay(std::vector<PlannedView>& plan, const Eigen::Vector3d& p_w,
         const auto turn = turnToward(p_w, end.T_w_b.translation(), yawOf(view.T_w_b));
         if (!turn) return;
         const double planned = -*turn;
-        const double most = space.inView + (end.distance - view.distance) * space.turnPerMetre;
+        const double most = inView + (end.distance - view.distance) * turnPerMetre;
         if (std::abs(planned) <= most || view.distance == plan.front().distance) {
             before = planned;
             side = 0.;
@@ -191,7 +192,9 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
         // Not even what lies beyond the hidden places was seen.
         way.isBlind = space.hidden > 0. && seen < space.hidden + kStep && seen <= free;
         way.plan = cut(plan, std::min({seen, free, whole}));
-        if (space.canLook && seen <= free) turnOnTheWay(way.plan, newPlace, space);
+        if (space.canLook && space.inView && seen <= free) {
+            turnOnTheWay(way.plan, newPlace, *space.inView, space.turnPerMetre);
+        }
     } else {
         way.isBlind = true;
         way.plan = cut(plan, std::min({kBlindStep, free, whole}));

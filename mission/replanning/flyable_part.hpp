@@ -3,7 +3,7 @@
 #pragma once
 
 #include <functional>
-#include <numbers>
+#include <optional>
 #include <vector>
 
 #include "control/route.hpp"
@@ -20,9 +20,9 @@ struct SpaceAhead {
     /// its camera there may fly there without observation.
     double hidden = 0.;
     bool canLook = false;  ///< the camera looks ahead and is turned by the robot's heading
-    /// A place is in view if the heading differs by less from its direction [rad]. pi: a robot in
-    /// flight turns to no place.
-    double inView = std::numbers::pi;
+    /// A place is in view if the heading differs by less from its direction [rad]. None: the robot
+    /// turns to a place only where it stands (LookAhead::stopped).
+    std::optional<double> inView = {};
     double turnPerMetre = 0.;  ///< how far the robot turns on a metre at full speed [rad/m]
 };
 
@@ -35,11 +35,11 @@ struct FlyablePart {
     bool isBlind = false;  ///< the part leads into space that could not be observed before
 };
 
-/// The part of a plan up to unobserved space or to an obstacle. On the way there a robot that can
-/// look turns as far as SpaceAhead::inView says, in place of the planned headings, so that the
-/// unobserved space comes into view. If the space right ahead, or right beside it, was not
-/// observed, the robot first turns its camera there. If it cannot (the camera looks down, or the
-/// heading is fixed), it makes a short blind step, from which it observes the next one.
+/// The part of a plan up to unobserved space or to an obstacle. If the space right ahead, or right
+/// beside it, was not observed, the robot first turns its camera there. If it cannot (the camera
+/// looks down, or the heading is fixed), it makes a short blind step, from which it observes the
+/// next one. If SpaceAhead::inView is given, it turns its camera already on the way to unobserved
+/// space; the covariances of such views remain those of the planned headings.
 /// @param plan from the robot's position on, at least two views
 FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& space);
 

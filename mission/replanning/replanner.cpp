@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replanning/replanner.hpp"
 
-#include <numbers>
-
 #include "flight/flight_setup.hpp"
 #include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
@@ -24,17 +22,19 @@ double asWideAsBody(const Camera& camera, double radius) {
 
 SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlanner& kind) {
     const bool isAhead = looksAhead(config.camera.T_b_c());
+    SpaceAhead space{.clearance = {},  // see flyableWay()
+                     .isSeen = [&map](const Eigen::Vector3d& p_w) { return map.isSeen(p_w); },
+                     .radius = config.robotRadius,
+                     .hidden = isAhead ? kHidden : 0.,
+                     .canLook = isAhead && config.space != StateKind::position &&
+                                kind.headings != Headings::fixed,
+                     .inView = {},
+                     .turnPerMetre = config.fly.turnRate / config.fly.speed};
     // Headings along the motion stay so.
-    const bool isTurning =
-        config.explore.look == LookAhead::flying && kind.headings != Headings::forward;
-    return {.clearance = {},  // see flyableWay()
-            .isSeen = [&map](const Eigen::Vector3d& p_w) { return map.isSeen(p_w); },
-            .radius = config.robotRadius,
-            .hidden = isAhead ? kHidden : 0.,
-            .canLook =
-                isAhead && config.space != StateKind::position && kind.headings != Headings::fixed,
-            .inView = isTurning ? kInView * 0.5 * config.camera.hfov * kDegree : std::numbers::pi,
-            .turnPerMetre = config.fly.turnRate / config.fly.speed};
+    if (config.explore.look == LookAhead::flying && kind.headings != Headings::forward) {
+        space.inView = kInView * 0.5 * config.camera.hfov * kDegree;
+    }
+    return space;
 }
 
 std::vector<Eigen::Vector2d> waypointsFromAbove(const std::vector<BeliefPoint>& path) {
