@@ -128,9 +128,10 @@ class ExploreProgress {
     void onUpdate(const ExplorationResult& flight) {
         const PlanUpdate& update = flight.updates.back();
         line_.show(fmt::format(
-            "{} of {} flights, {} arrived; {}, seed {}: {:.1f} s, {:.1f} m flown, {:.1f} m to go{}",
-            flown_, asked_, arrived_, flight.planner, flight.seed, update.time, flight.flown,
-            update.length, rest_.text(running_.seconds())));
+            "{} of {} flights, {} arrived; {}, seed {}: {:.1f} s, {:.1f} m flown, {}{}", flown_,
+            asked_, arrived_, flight.planner, flight.seed, update.time, flight.flown,
+            std::isnan(update.length) ? "no way" : fmt::format("{:.1f} m to go", update.length),
+            rest_.text(running_.seconds())));
     }
 
   private:

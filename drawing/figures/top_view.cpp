@@ -47,7 +47,8 @@ std::vector<PathPoint> spreadPoints(const DrawnPath& path, double step) {
     return spread;
 }
 
-/// About twenty ellipses along the path, with its ends; more would hide each other.
+/// About twenty ellipses along the path, with its ends; more would hide each other. That of the end
+/// stands out.
 void addEllipses(Plot& plot, const DrawnPath& path, double scale, const std::string& name) {
     if (path.points.empty()) return;
     std::vector<Plot::Points> outlines;
@@ -58,6 +59,7 @@ void addEllipses(Plot& plot, const DrawnPath& path, double scale, const std::str
     plot.fill(outlines, {.color = path.color, .opacity = 0.22, .name = name});
     for (const Plot::Points& outline : outlines)
         plot.curve(outline, {.color = path.color, .width = 1.2});
+    plot.fill({outlines.back()}, {.color = path.color, .opacity = 0.6});
 }
 
 /// A sector around the view direction.
@@ -125,14 +127,14 @@ Plot topViewPlot(const TopView& view, double side) {
     if (view.background.getSize() > 0) plot.picture(lightened(view.background), view.area, true);
     for (const DrawnTree& tree : view.trees)
         if (!tree.isOnTop) addTree(plot, tree);
+    if (view.horizontalFov > 0.)
+        for (const DrawnPath& path : view.paths) addWedges(plot, view, path);
     if (view.ellipseScale > 0.) {
         const std::string name = view.ellipseScale == 1.
                                      ? "3σ of the position"
                                      : fmt::format("3σ of the position, {:g}×", view.ellipseScale);
         for (const DrawnPath& path : view.paths) addEllipses(plot, path, view.ellipseScale, name);
     }
-    if (view.horizontalFov > 0.)
-        for (const DrawnPath& path : view.paths) addWedges(plot, view, path);
     for (std::size_t i = view.paths.size(); i-- > 0;) addRoute(plot, view, i);
     for (const DrawnTree& tree : view.trees)
         if (tree.isOnTop) addTree(plot, tree);

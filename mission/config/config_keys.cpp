@@ -28,7 +28,13 @@ Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d
         }
         place.yaw = numbers[3];
     }
-    if (!bounds.contains(place.position)) root.fail(key, "outside the bounds");
+    if (!bounds.contains(place.position)) {
+        const auto text = [](const Eigen::Vector3d& p) {
+            return fmt::format("[{:g}, {:g}, {:g}]", p.x(), p.y(), p.z());
+        };
+        root.fail(key, fmt::format("{} is outside the bounds {} to {}", text(place.position),
+                                   text(bounds.min()), text(bounds.max())));
+    }
     return place;
 }
 

@@ -311,7 +311,7 @@ TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
         EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
         EXPECT_FALSE(fs::exists(folder_ / "bad"));
     };
-    refuses("--set goal=[100,2,2]", "goal: outside the bounds");
+    refuses("--set goal=[100,2,2]", "goal: [100, 2, 2] is outside the bounds");
     refuses("--planners none_such", "explore.planners: 'none_such' is not one of");
     refuses("--planners rrt_star/sometimes", "the policy 'sometimes' is not one of fixed");
     refuses("--planners rrt_star/fixed", "rrt_star/fixed: the robot's heading is not free");

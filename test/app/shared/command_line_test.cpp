@@ -21,7 +21,7 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(plan("--set planner.alpha=1.5"), "planner.alpha: 1.5 is outside [0, 1]");
     expectBadInput(plan("--set planner.alhpa=1"), "did you mean 'planner.alpha'");
     expectBadInput(plan("--set scene.file=nowhere.yaml"), "nowhere.yaml");
-    expectBadInput(plan("--set goal=[50,0,2]"), "goal: outside the bounds");
+    expectBadInput(plan("--set goal=[50,0,2]"), "goal: [50, 0, 2] is outside the bounds");
     expectBadInput(plan("--set noise.initial=[-1,0,0,0,0,0]"), "negative variance");
     expectBadInput(plan("--set camera.hfov=0"), "camera.hfov");
     expectBadInput(plan("", "no_such_config"), "no such file");
