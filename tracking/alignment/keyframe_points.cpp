@@ -126,7 +126,8 @@ ImageF halvedDepth(const ImageF& depth, float spread) {
         const Float farthest = simd::max(simd::max(a, b), simd::max(c, d));
         const Float count = (isThere(a) + isThere(b)) + (isThere(c) + isThere(d));
         const Float mean = ((a + b) + (c + d)) / simd::max(count, one);
-        return (farthest <= nearest * (1.F + spread)) & (count > kLeastMeasured) ? mean : zero;
+        const Int isSurface = (farthest <= nearest * (1.F + spread)) & (count > kLeastMeasured);
+        return isSurface ? mean : zero;
     };
     for (unsigned v = 0; v < half.getHeight(); ++v) {
         halveRows(depth[2 * v], depth[2 * v + 1], half[v], half.getWidth(), merge);
