@@ -13,13 +13,10 @@ constexpr int kRemembered = 20;      // views: farther back, the scene may have 
 /// view are more alike to it, but a few pixels of it may show anything.
 constexpr double kFromFlight = 0.25;
 
-/// A view of which one band at a time has depth.
+/// The bands of a view. Most views are known as a whole: only what is partly known is copied.
 class Bands {
   public:
-    explicit Bands(const View& view) : view_(view) {
-        part_.intensity = view.intensity;
-        part_.depth.resize(view.depth.getHeight(), view.depth.getWidth(), 0.F);
-    }
+    explicit Bands(const View& view) : view_(view) {}
 
     double pixels(unsigned band) const { return static_cast<double>(endOf(band) - beginOf(band)); }
 
@@ -31,6 +28,10 @@ class Bands {
     }
 
     Matrix6 information(unsigned band, const InformationModel& model) {
+        if (part_.depth.getSize() == 0) {
+            part_.intensity = view_.intensity;
+            part_.depth.resize(view_.depth.getHeight(), view_.depth.getWidth(), 0.F);
+        }
         const float* depth = view_.depth.bitmap;
         float* part = part_.depth.bitmap;
         std::copy(depth + beginOf(band), depth + endOf(band), part + beginOf(band));
@@ -47,7 +48,7 @@ class Bands {
     std::size_t endOf(unsigned band) const { return beginOf(band + 1); }
 
     const View& view_;
-    View part_;
+    View part_;  // of which one band at a time has depth
 };
 
 }  // namespace
