@@ -83,7 +83,7 @@ class SingleRays {
                 visible_.row(v)[u] = firstHit(origin, ray, context);
             }
         }
-        shader_.shade(camera, T_c_w, visible_, view);
+        shader_.shade(camera, T_c_w, visible_, {}, view);
         applyPointSpread(view);
     }
 

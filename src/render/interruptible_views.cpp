@@ -6,6 +6,10 @@
 namespace photonav {
 namespace {
 
+/// Rows beyond a band on which its own depend: the point spread needs one, and this one depends on
+/// the surfaces seen from the next one.
+constexpr unsigned kMargin = 2;
+
 /// The rows from `first` up to, not including, `end` of a camera's image.
 Camera rowsOf(const Camera& camera, unsigned first, unsigned end) {
     return {camera.width, end - first,
@@ -29,8 +33,8 @@ void renderInBands(const Camera& camera, std::size_t pixels,
     View band;
     for (unsigned v = 0; v < camera.height; v += rows) {
         const unsigned count = std::min(rows, camera.height - v);
-        const unsigned above = v > 0 ? 1 : 0;
-        render(rowsOf(camera, v - above, std::min(v + count + 1, camera.height)), band);
+        const unsigned above = std::min(v, kMargin);
+        render(rowsOf(camera, v - above, std::min(v + count + kMargin, camera.height)), band);
         copyImageRows(band.intensity, above, count, view.intensity, v);
         copyImageRows(band.depth, above, count, view.depth, v);
     }

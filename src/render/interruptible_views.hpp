@@ -20,8 +20,8 @@ inline std::size_t pixelsOf(const Camera& camera) {
 }
 
 /// Renders a view in bands of whole rows with at most `pixels` pixels each (but at least one row),
-/// or at once if it has no more pixels. Each band is rendered with one more row on either side,
-/// because the point spread needs it.
+/// or at once if it has no more pixels. Each band is rendered with two more rows on either side, on
+/// which its own depend.
 /// @param render renders a view for the camera of a band
 void renderInBands(const Camera& camera, std::size_t pixels,
                    const std::function<void(const Camera& band, View& view)>& render, View& view);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "photometry/simd.hpp"
+#include "render/edge_coverage.hpp"
 #include "render/rasterizer.hpp"
 #include "render/surface_shader.hpp"
 
@@ -133,11 +134,13 @@ struct MeshRenderer::Impl {
         : scene(std::move(input)),
           caster(scene.triangles),
           rasterizer(scene.triangles),
+          borders(scene.triangles),
           shader(scene) {}
 
     Scene scene;
     RayCaster caster;
     Rasterizer rasterizer;
+    BorderFinder borders;
     SurfaceShader shader;
 };
 
@@ -153,13 +156,19 @@ void MeshRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) c
     visible.resize(camera.width, camera.height);
     view.intensity.resize(camera.height, camera.width);
     view.depth.resize(camera.height, camera.width);
-    if (impl_->scene.triangles.size() * kPixelsPerTriangle <=
-        std::size_t{camera.width} * camera.height) {
+    const bool areTrianglesLarge = impl_->scene.triangles.size() * kPixelsPerTriangle <=
+                                   std::size_t{camera.width} * camera.height;
+    if (areTrianglesLarge) {
         impl_->rasterizer.rasterize(camera, T_c_w, visible);
     } else {
         impl_->caster.cast(camera, T_c_w, visible);
     }
-    impl_->shader.shade(camera, T_c_w, visible, view);
+    thread_local std::vector<Covering> coverings;
+    coverings.clear();
+    if (camera.hasPointSpread && areTrianglesLarge) {
+        impl_->borders.find(camera, T_c_w, visible, coverings);
+    }
+    impl_->shader.shade(camera, T_c_w, visible, coverings, view);
     if (camera.hasPointSpread) applyPointSpread(view);
 }
 

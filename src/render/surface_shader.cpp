@@ -291,6 +291,16 @@ void shadePart(const Surface& surface, unsigned begin, unsigned end, unsigned wi
     }
 }
 
+/// The grey value of a surface's plane at a pixel.
+float greyAt(const Surface& surface, unsigned x, unsigned y) {
+    if (const auto uniform = surface.texture->uniform()) return *uniform;
+    const Float column = splat(static_cast<float>(x));
+    const auto row = static_cast<float>(y);
+    const Float w = surface.inverseDepth(column, row);
+    const Float z = 1.F / simd::clamp(w, surface.farthest, surface.nearest);
+    return trilinear(surface, z, surface.u(column, row) * z, surface.v(column, row) * z, 1)[0];
+}
+
 /// The same for a run of any length. Parts are short enough to be within a uniform area.
 void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
               const PixelRow& pixels) {
@@ -324,7 +334,7 @@ SurfaceShader::SurfaceShader(const Scene& scene) : scene_(&scene) {
 }
 
 void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
-                          View& view) const {
+                          std::span<const Covering> coverings, View& view) const {
     SurfaceCache surfaces(*scene_, textures_, camera, T_c_w);
     for (unsigned y = 0; y < camera.height; ++y) {
         const std::uint32_t* ids = visible.row(y);
@@ -339,6 +349,12 @@ void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const Visibil
             }
             begin = end;
         }
+    }
+    for (const Covering& covering : coverings) {
+        const Surface& surface = surfaces[covering.id];
+        if (surface.edgeOn) continue;
+        float& grey = view.intensity[covering.y][covering.x];
+        grey += covering.share * (greyAt(surface, covering.x, covering.y) - grey);
     }
 }
 

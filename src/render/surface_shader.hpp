@@ -25,6 +25,13 @@ struct VisibilityImage {
     std::vector<std::uint32_t> ids;
 };
 
+/// A triangle that covers a part of a pixel.
+struct Covering {
+    unsigned x, y;     ///< of the pixel
+    std::uint32_t id;  ///< of the triangle; it need not reach the pixel's centre
+    float share;       ///< of the pixel's area
+};
+
 /// Evaluates depth and grey value per pixel from the plane of its triangle. Inverse depth and
 /// (texture coordinates / depth) are affine in the pixel, with coefficients computed in double
 /// precision once per triangle and view. They change more smoothly with the pose than the hit
@@ -39,9 +46,12 @@ class SurfaceShader {
     explicit SurfaceShader(const Scene& scene);
 
     /// Computes depth and intensity of a view. Pixels without a triangle become 0. Thread-safe.
+    /// @param coverings change the grey values of pixels of which other triangles cover a part;
+    /// their
+    ///        depths remain those of their centres
     /// @param view must have the camera's size
     void shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
-               View& view) const;
+               std::span<const Covering> coverings, View& view) const;
 
   private:
     std::vector<MipTexture> textures_;
