@@ -60,8 +60,8 @@ struct Observed {
 };
 
 /// Share of the information about a direction from which on one block outvotes all others. At the
-/// minimum it fits nearly exactly, so that its residuals show nothing of its errors.
-constexpr double kOneBlock = 0.5;
+/// minimum at most a tenth of its error is left in its residuals.
+constexpr double kOneBlock = 0.9;
 
 /// Covariance of directions in which a block outvotes all others, as of directions that are not
 /// observed, in y / Observed::scale.

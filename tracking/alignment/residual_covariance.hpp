@@ -24,7 +24,7 @@ struct MeasuredInformation {
 /// This is the variance by leaving out one block at a time ("jackknife", the cluster-robust "CR3").
 /// Blocks count as independent; the pixels of a block may be correlated. It follows from residuals
 /// of any size and cause, and does not depend on an assumed image noise. The exposure is eliminated
-/// first. A direction about which one block says more than all others together counts as not
+/// first. A direction about which one block has nine tenths of the information counts as not
 /// observed: such a block fits nearly exactly, wherever it leads.
 /// Errors that repeat from image to image: scatterOfRepeatingErrors().
 ///

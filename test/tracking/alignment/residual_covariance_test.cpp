@@ -335,6 +335,41 @@ TEST(ResidualCovariance, ACornerAtTheBorderDoesNotDetermineThePose) {
     }
 }
 
+/// Texture on a small carpet only: in some direction one block says more than all others together,
+/// and still shows by its residuals how much.
+TEST(ResidualCovariance, ASmallObjectDeterminesThePose) {
+    Scene scene = test::floorOf(uniformTexture(0.6F));
+    addPlane(scene, {-0.15, -0.1, 0.01}, {0.3, 0., 0.}, {0., 0.3, 0.},
+             addTexture(scene, valueNoise({.size = {0.3, 0.3},
+                                           .cells = {0.1, 0.05},
+                                           .amplitudes = {0.2, 0.2},
+                                           .seed = 4})));
+    const MeshRenderer world(std::move(scene));
+    const Camera camera = makeCamera(188, 120, 1.22);
+    DenseAligner aligner(world, camera, forPhotographs());
+    Vector6 sigma;
+    sigma << 0.05, 0.05, 0.05, 0.03, 0.03, 0.03;
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    double nees = 0., within = 0.;
+    constexpr int kImages = 40;
+    for (int i = 0; i < kImages; ++i) {
+        const Pose truth = lookFrom({0.2 * normal(random), 0.2 * normal(random), 1.4}, test::kDown,
+                                    normal(random));
+        const ImageF image = test::photographed(world, camera, truth).intensity;
+        const Vector6 error = sigma.unaryExpr([&](double s) { return s * normal(random); });
+        const UncertainPose prior{expSE3(error) * truth, Matrix6(sigma.cwiseAbs2().asDiagonal())};
+        const Alignment a = aligner.align(test::noisy(image, 0.01, random), prior);
+        nees += test::neesOf(a, truth) / kImages;
+        const Matrix6 unit = sigma.cwiseInverse().asDiagonal();
+        const auto ratios = Eigen::SelfAdjointEigenSolver<Matrix6>(unit * a.covariance * unit);
+        within += std::sqrt(ratios.eigenvalues().maxCoeff()) / kImages;
+    }
+    std::cout << "NEES per dof " << nees << ", largest sigma " << within << " of the prior's\n";
+    EXPECT_LT(nees, 2.);
+    EXPECT_LT(within, 0.5);
+}
+
 TEST(ResidualCovariance, RepeatingErrorsDoNotAverageOut) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal;
