@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 #include "photometry/simd.hpp"
@@ -32,7 +33,10 @@ constexpr int kMaxLevels = 17;  // a texture has at most 32768 texels along a si
 /// a x + b y + c over the image, x and y in pixels.
 struct Affine {
     float a, b, c;
-    Float operator()(Float x, float y) const { return a * x + (b * y + c); }
+    template <typename Y>  // float or Float
+    Float operator()(Float x, Y y) const {
+        return a * x + (b * y + c);
+    }
 };
 
 /// What one triangle looks like from one camera.
@@ -137,12 +141,15 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
 /// slot.
 class SurfaceCache {
   public:
+    static constexpr std::size_t kSlots = 256;
+    static std::size_t slotOf(std::uint32_t id) { return id % kSlots; }
+
     SurfaceCache(const Scene& scene, const std::vector<MipTexture>& textures, const Camera& camera,
                  const Pose& T_c_w)
         : scene_(scene), textures_(textures), camera_(camera), T_c_w_(T_c_w) {}
 
     const Surface& operator[](std::uint32_t id) {
-        Surface& surface = surfaces_[id % surfaces_.size()];
+        Surface& surface = surfaces_[slotOf(id)];
         if (surface.id != id) {
             const Triangle& triangle = scene_.triangles[id];
             surface.id = id;
@@ -156,7 +163,7 @@ class SurfaceCache {
     const std::vector<MipTexture>& textures_;
     const Camera& camera_;
     const Pose& T_c_w_;
-    std::array<Surface, 256> surfaces_;
+    std::array<Surface, kSlots> surfaces_;
 };
 
 /// i modulo n for whole numbers; within [0, n) whatever i is.
@@ -291,22 +298,64 @@ void shadePart(const Surface& surface, unsigned begin, unsigned end, unsigned wi
     }
 }
 
-/// The grey value of a surface's plane at a pixel.
-float greyAt(const Surface& surface, unsigned x, unsigned y) {
-    if (const auto uniform = surface.texture->uniform()) return *uniform;
-    const Float column = splat(static_cast<float>(x));
-    const auto row = static_cast<float>(y);
-    const Float w = surface.inverseDepth(column, row);
-    const Float z = 1.F / simd::clamp(w, surface.farthest, surface.nearest);
-    return trilinear(surface, z, surface.u(column, row) * z, surface.v(column, row) * z, 1)[0];
-}
-
 /// The same for a run of any length. Parts are short enough to be within a uniform area.
 void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
               const PixelRow& pixels) {
     constexpr unsigned kPart = 64;
     for (; begin < end; begin += kPart) {
         shadePart(surface, begin, std::min(end, begin + kPart), width, row, pixels);
+    }
+}
+
+/// Grey values of a surface's plane at up to kWidth pixels.
+Float greysAt(const Surface& surface, Float x, Float y, unsigned count) {
+    if (const auto uniform = surface.texture->uniform()) return splat(*uniform);
+    const Float w = surface.inverseDepth(x, y);
+    const Float z = 1.F / simd::clamp(w, surface.farthest, surface.nearest);
+    const unsigned active = simd::kAllLanes >> (kWidth - count);
+    return trilinear(surface, z, surface.u(x, y) * z, surface.v(x, y) * z, active);
+}
+
+/// Groups indices by a key below the number of groups, in order.
+/// @param grouped overwritten
+template <class Key>
+void group(std::size_t count, const Key& key, std::vector<unsigned>& grouped) {
+    std::array<unsigned, SurfaceCache::kSlots + 1> begin{};
+    for (unsigned i = 0; i < count; ++i) ++begin[key(i) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    grouped.resize(count);
+    for (unsigned i = 0; i < count; ++i) grouped[begin[key(i)]++] = i;
+}
+
+/// Adds the shares of pixels that other triangles cover. The grey values of each triangle are
+/// computed together.
+void cover(SurfaceCache& surfaces, std::span<const Covering> coverings, ImageF& intensity) {
+    constexpr float kUnseen = -1.F;
+    thread_local std::vector<unsigned> bySurface;  // spare allocations per view
+    thread_local std::vector<float> greys;
+    group(
+        coverings.size(), [&](unsigned i) { return SurfaceCache::slotOf(coverings[i].id); },
+        bySurface);
+    greys.resize(coverings.size());
+    for (std::size_t begin = 0; begin < bySurface.size();) {
+        const std::uint32_t id = coverings[bySurface[begin]].id;
+        Float x{}, y{};
+        unsigned count = 0;
+        for (; count < kWidth && begin + count < bySurface.size(); ++count) {
+            const Covering& covering = coverings[bySurface[begin + count]];
+            if (covering.id != id) break;
+            x[count] = static_cast<float>(covering.x);
+            y[count] = static_cast<float>(covering.y);
+        }
+        const Surface& surface = surfaces[id];
+        const Float grey = surface.edgeOn ? splat(kUnseen) : greysAt(surface, x, y, count);
+        for (unsigned i = 0; i < count; ++i) greys[bySurface[begin + i]] = grey[i];
+        begin += count;
+    }
+    for (std::size_t i = 0; i < coverings.size(); ++i) {
+        if (greys[i] == kUnseen) continue;
+        float& grey = intensity[coverings[i].y][coverings[i].x];
+        grey += coverings[i].share * (greys[i] - grey);
     }
 }
 
@@ -350,12 +399,7 @@ void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const Visibil
             begin = end;
         }
     }
-    for (const Covering& covering : coverings) {
-        const Surface& surface = surfaces[covering.id];
-        if (surface.edgeOn) continue;
-        float& grey = view.intensity[covering.y][covering.x];
-        grey += covering.share * (greyAt(surface, covering.x, covering.y) - grey);
-    }
+    cover(surfaces, coverings, view.intensity);
 }
 
 }  // namespace photonav
