@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "photometry/simd.hpp"
-#include "render/edge_coverage.hpp"
+#include "render/border_finder.hpp"
 #include "render/rasterizer.hpp"
 #include "render/surface_shader.hpp"
 
@@ -156,18 +156,14 @@ void MeshRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) c
     visible.resize(camera.width, camera.height);
     view.intensity.resize(camera.height, camera.width);
     view.depth.resize(camera.height, camera.width);
-    const bool areTrianglesLarge = impl_->scene.triangles.size() * kPixelsPerTriangle <=
-                                   std::size_t{camera.width} * camera.height;
-    if (areTrianglesLarge) {
+    if (impl_->scene.triangles.size() * kPixelsPerTriangle <=
+        std::size_t{camera.width} * camera.height) {
         impl_->rasterizer.rasterize(camera, T_c_w, visible);
     } else {
         impl_->caster.cast(camera, T_c_w, visible);
     }
-    thread_local std::vector<Covering> coverings;
-    coverings.clear();
-    if (camera.hasPointSpread && areTrianglesLarge) {
-        impl_->borders.find(camera, T_c_w, visible, coverings);
-    }
+    thread_local Coverings coverings;
+    impl_->borders.find(camera, T_c_w, visible, coverings);
     impl_->shader.shade(camera, T_c_w, visible, coverings, view);
     if (camera.hasPointSpread) applyPointSpread(view);
 }

@@ -11,8 +11,9 @@ namespace photonav {
 
 /// Renders views of a scene. Visibility at pixel centres is exact: by a depth buffer if there are
 /// few triangles per pixel, else by Embree's ray packets; both find the same triangles. Depth and
-/// grey value follow from the plane of the visible triangle (surface_shader.hpp). Both sides of a
-/// triangle are visible.
+/// grey value follow from the plane of the visible triangle (surface_shader.hpp). A pixel that the
+/// border of two surfaces crosses shows both, by their shares of its area (border_finder.hpp). Both
+/// sides of a triangle are visible.
 class MeshRenderer : public ViewSource {
   public:
     explicit MeshRenderer(Scene scene);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "photometry/simd.hpp"
@@ -316,46 +317,45 @@ Float greysAt(const Surface& surface, Float x, Float y, unsigned count) {
     return trilinear(surface, z, surface.u(x, y) * z, surface.v(x, y) * z, active);
 }
 
-/// Groups indices by a key below the number of groups, in order.
-/// @param grouped overwritten
-template <class Key>
-void group(std::size_t count, const Key& key, std::vector<unsigned>& grouped) {
+/// Indices of coverings, those of the same slot of the cache one after the other.
+void groupBySlot(std::span<const Covering> coverings, std::vector<unsigned>& grouped) {
     std::array<unsigned, SurfaceCache::kSlots + 1> begin{};
-    for (unsigned i = 0; i < count; ++i) ++begin[key(i) + 1];
+    for (const Covering& covering : coverings) ++begin[SurfaceCache::slotOf(covering.id) + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    grouped.resize(count);
-    for (unsigned i = 0; i < count; ++i) grouped[begin[key(i)]++] = i;
+    grouped.resize(coverings.size());
+    for (unsigned i = 0; i < coverings.size(); ++i) {
+        grouped[begin[SurfaceCache::slotOf(coverings[i].id)]++] = i;
+    }
 }
 
 /// Adds the shares of pixels that other triangles cover. The grey values of each triangle are
-/// computed together.
+/// looked up together.
 void cover(SurfaceCache& surfaces, std::span<const Covering> coverings, ImageF& intensity) {
-    constexpr float kUnseen = -1.F;
-    thread_local std::vector<unsigned> bySurface;  // spare allocations per view
-    thread_local std::vector<float> greys;
-    group(
-        coverings.size(), [&](unsigned i) { return SurfaceCache::slotOf(coverings[i].id); },
-        bySurface);
-    greys.resize(coverings.size());
-    for (std::size_t begin = 0; begin < bySurface.size();) {
-        const std::uint32_t id = coverings[bySurface[begin]].id;
+    thread_local std::vector<unsigned> order;  // spare allocations per view
+    thread_local std::vector<float> changes;
+    groupBySlot(coverings, order);
+    changes.resize(coverings.size());
+    for (std::size_t begin = 0; begin < order.size();) {
+        const std::uint32_t id = coverings[order[begin]].id;
         Float x{}, y{};
         unsigned count = 0;
-        for (; count < kWidth && begin + count < bySurface.size(); ++count) {
-            const Covering& covering = coverings[bySurface[begin + count]];
+        for (; count < kWidth && begin + count < order.size(); ++count) {
+            const Covering& covering = coverings[order[begin + count]];
             if (covering.id != id) break;
-            x[count] = static_cast<float>(covering.x);
-            y[count] = static_cast<float>(covering.y);
+            x[count] = static_cast<float>(covering.x) + covering.dx;
+            y[count] = static_cast<float>(covering.y) + covering.dy;
         }
         const Surface& surface = surfaces[id];
-        const Float grey = surface.edgeOn ? splat(kUnseen) : greysAt(surface, x, y, count);
-        for (unsigned i = 0; i < count; ++i) greys[bySurface[begin + i]] = grey[i];
+        const Float greys = surface.edgeOn ? Float{} : greysAt(surface, x, y, count);
+        for (unsigned i = 0; i < count; ++i) {
+            const Covering& covering = coverings[order[begin + i]];
+            const float share = surface.edgeOn ? 0.F : covering.share;
+            changes[order[begin + i]] = share * (greys[i] - intensity[covering.y][covering.x]);
+        }
         begin += count;
     }
     for (std::size_t i = 0; i < coverings.size(); ++i) {
-        if (greys[i] == kUnseen) continue;
-        float& grey = intensity[coverings[i].y][coverings[i].x];
-        grey += coverings[i].share * (greys[i] - grey);
+        intensity[coverings[i].y][coverings[i].x] += changes[i];
     }
 }
 
@@ -383,7 +383,7 @@ SurfaceShader::SurfaceShader(const Scene& scene) : scene_(&scene) {
 }
 
 void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
-                          std::span<const Covering> coverings, View& view) const {
+                          const Coverings& coverings, View& view) const {
     SurfaceCache surfaces(*scene_, textures_, camera, T_c_w);
     for (unsigned y = 0; y < camera.height; ++y) {
         const std::uint32_t* ids = visible.row(y);
@@ -399,7 +399,8 @@ void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const Visibil
             begin = end;
         }
     }
-    cover(surfaces, coverings, view.intensity);
+    cover(surfaces, coverings.alongRows, view.intensity);
+    cover(surfaces, coverings.alongColumns, view.intensity);
 }
 
 }  // namespace photonav

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "photometry/view.hpp"
@@ -25,11 +24,18 @@ struct VisibilityImage {
     std::vector<std::uint32_t> ids;
 };
 
-/// A triangle that covers a part of a pixel.
+/// A triangle that covers a part of a pixel whose centre shows another one.
 struct Covering {
     unsigned x, y;     ///< of the pixel
-    std::uint32_t id;  ///< of the triangle; it need not reach the pixel's centre
+    std::uint32_t id;  ///< of the triangle
     float share;       ///< of the pixel's area
+    float dx, dy;      ///< where to look up its grey value, from the pixel's centre [pixels]
+};
+
+/// Those at borders across rows of pixels, and across columns. The shares of a pixel in a row (or
+/// column) add up; those of its row and its column multiply, as in the average over a square.
+struct Coverings {
+    std::vector<Covering> alongRows, alongColumns;
 };
 
 /// Evaluates depth and grey value per pixel from the plane of its triangle. Inverse depth and
@@ -46,12 +52,10 @@ class SurfaceShader {
     explicit SurfaceShader(const Scene& scene);
 
     /// Computes depth and intensity of a view. Pixels without a triangle become 0. Thread-safe.
-    /// @param coverings change the grey values of pixels of which other triangles cover a part;
-    /// their
-    ///        depths remain those of their centres
+    /// @param coverings change grey values, and not depths
     /// @param view must have the camera's size
     void shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
-               std::span<const Covering> coverings, View& view) const;
+               const Coverings& coverings, View& view) const;
 
   private:
     std::vector<MipTexture> textures_;

@@ -26,21 +26,26 @@ struct FlatSurface {
 ///
 /// Where neighbouring pixel centres see different surfaces, the border between them is an edge of
 /// the nearer one, or the line at which the two planes meet: straight lines in the image, so that
-/// areas follow without sampling (after Persson, "Geometry Buffer Anti-Aliasing", 2011). A surface
-/// that is seen from no pixel centre stays unseen.
+/// areas follow without sampling (after Persson, "Geometry Buffer Anti-Aliasing", 2011). Each
+/// border counts as a line without end: a corner of a surface has up to a quarter of a pixel too
+/// much or too little. A surface that is seen from no pixel centre stays unseen, and borders to
+/// where nothing is are not blended.
 class BorderFinder {
   public:
-    /// @param triangles should be larger than pixels: the edges of smaller ones are not borders of
-    ///        surfaces
+    /// Meshes of more triangles are left as they are: many of their triangles are smaller than a
+    /// pixel, so that their edges are no borders of surfaces. The same for all sizes of images.
+    static constexpr std::size_t kMostTriangles = 5000;
+
     explicit BorderFinder(const std::vector<Triangle>& triangles);
 
+    /// None for cameras without point spread, whose pixels are single rays.
     /// @param visible from pixel centres
     /// @param coverings overwritten
     void find(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
-              std::vector<Covering>& coverings) const;
+              Coverings& coverings) const;
 
   private:
-    std::vector<FlatSurface> surfaces_;  ///< by triangle
+    std::vector<FlatSurface> surfaces_;  ///< by triangle; none: too many
 };
 
 }  // namespace photonav

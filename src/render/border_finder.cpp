@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/edge_coverage.hpp"
+#include "render/border_finder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 /// The line a x + b y + c = 0 in the image, x and y in pixels; also the function itself.
 struct ImageLine {
-    double a, b, c;
+    double a = 0., b = 0., c = 0.;
     double operator()(double x, double y) const { return a * x + b * y + c; }
     ImageLine operator-(const ImageLine& other) const {
         return {a - other.a, b - other.b, c - other.c};
@@ -34,8 +34,8 @@ ImageLine lineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
 struct Outline {
     std::uint32_t id = VisibilityImage::kNothing;
     unsigned sides = 0;
-    std::array<ImageLine, 4> edges;  ///< not negative inside
-    ImageLine inverseDepth;          ///< [1/m]
+    std::array<ImageLine, 4> edges{};  ///< not negative inside
+    ImageLine inverseDepth{};          ///< [1/m]
 };
 
 Outline outlineOf(std::uint32_t id, const FlatSurface& surface, const Camera& camera,
@@ -75,20 +75,21 @@ class OutlineCache {
 /// Direction from a pixel to its neighbour.
 enum class Axis { row, column };
 
-/// A line in the image, `at` pixels from a pixel's centre toward its neighbour's. It moves across
-/// this direction by `slope` pixels per pixel.
+/// A line in the image.
 struct Border {
-    double at, slope;
+    double at;     ///< from a pixel's centre toward its neighbour's [pixels]
+    double slope;  ///< how much `at` changes from one row (or column) of pixels to the next
 };
 
 /// The border of two surfaces, of which `first` is seen from (x, y) and `second` from the next
-/// pixel. None if the border runs rather along the axis than across, as neighbours along the other
-/// axis see it better.
+/// pixel. None if it makes less than 45 degrees with the axis: then it lies between neighbours
+/// along the other axis.
 std::optional<Border> borderBetween(const Outline& first, const Outline& second, double x, double y,
                                     Axis axis) {
     const auto step = [axis](const ImageLine& f) { return axis == Axis::row ? f.a : f.b; };
     const auto zeroOf = [&](const ImageLine& f) { return -f(x, y) / step(f); };
-    const auto none = ImageLine{};
+    constexpr double kRounding = 1e-6;  // [pixels]
+    const ImageLine none;
     const ImageLine *exit = &none, *entry = &none;
     double leaves = kNoEnd, enters = -kNoEnd;
     for (const ImageLine& edge : std::span(first.edges).first(first.sides)) {
@@ -99,8 +100,8 @@ std::optional<Border> borderBetween(const Outline& first, const Outline& second,
     }
     // How far the second one is in front of the first one, where both are there.
     const ImageLine inFront = second.inverseDepth - first.inverseDepth;
-    const double begin = std::clamp(enters, 0., 1.);
-    const bool secondCovers = inFront(x, y) + begin * step(inFront) > 0.;
+    const bool secondCovers =
+        enters > -kRounding && inFront(x, y) + std::min(enters, 1.) * step(inFront) > 0.;
     const ImageLine* line = secondCovers ? entry : exit;
     if (!secondCovers && step(inFront) > 0. && zeroOf(inFront) < leaves) line = &inFront;
     const double across = std::abs(step(*line));
@@ -161,11 +162,17 @@ class BorderSearch {
         const Outline outline = outlines_[id];  // a copy: the second one may replace it
         const auto border = borderBetween(outline, outlines_[nextId], first.x, first.y, axis);
         if (!border) return;
-        const auto add = [&](Pixel pixel, std::uint32_t other, double share) {
-            if (share > 0.) found.push_back({pixel.x, pixel.y, other, static_cast<float>(share)});
+        const auto add = [&](Pixel pixel, std::uint32_t other, double distance, double sign) {
+            const double share = shareBeyond(distance, border->slope);
+            if (!(share > 0.)) return;
+            // A little beyond the border. At the border, as the pixel that shows the other surface
+            // at its centre, if the centre is there: so views change smoothly.
+            const auto beyond = static_cast<float>(sign * 1.5 * distance);
+            found.push_back({pixel.x, pixel.y, other, static_cast<float>(share),
+                             axis == Axis::row ? beyond : 0.F, axis == Axis::row ? 0.F : beyond});
         };
-        add(first, nextId, shareBeyond(border->at, border->slope));
-        add(second, id, shareBeyond(1. - border->at, border->slope));
+        add(first, nextId, border->at, 1.);
+        add(second, id, 1. - border->at, -1.);
     }
 
     const std::vector<FlatSurface>& surfaces_;
@@ -174,56 +181,62 @@ class BorderSearch {
     OutlineCache outlines_;
 };
 
-/// The corner of a triangle that another one does not have; none if they do not share one edge.
+/// The corner of a triangle that another one does not have; none if they do not share one edge, or
+/// if the texture does not go on across it.
 std::optional<unsigned> ownCorner(const Triangle& triangle, const Triangle& other) {
+    if (triangle.texture != other.texture) return {};
     unsigned own = 0, count = 0;
     for (unsigned i = 0; i < 3; ++i) {
-        const auto isSame = [&](const auto& corner) { return corner == triangle.corners[i]; };
-        if (std::ranges::any_of(other.corners, isSame)) continue;
+        bool isShared = false;
+        for (unsigned j = 0; j < 3; ++j) {
+            isShared |= triangle.corners[i] == other.corners[j] && triangle.uv[i] == other.uv[j];
+        }
+        if (isShared) continue;
         own = i;
         ++count;
     }
     return count == 1 ? std::optional(own) : std::nullopt;
 }
 
-/// The parallelogram of two triangles; none if they do not make up one of a single texture.
-std::optional<FlatSurface> parallelogramOf(const Triangle& triangle, const Triangle& other) {
+/// The corners of the parallelogram of two triangles; none if they do not make up one.
+std::optional<std::array<Eigen::Vector3f, 4>> parallelogramOf(const Triangle& triangle,
+                                                              const Triangle& other) {
     constexpr float kFlat = 1e-4F;  // [share of the diagonal]
     const auto i = ownCorner(triangle, other), j = ownCorner(other, triangle);
-    if (triangle.texture != other.texture || !i || !j) return {};
+    if (!i || !j) return {};
     const Eigen::Vector3f& a = triangle.corners[*i];
     const Eigen::Vector3f& b = triangle.corners[(*i + 1) % 3];
     const Eigen::Vector3f& c = other.corners[*j];
     const Eigen::Vector3f& d = triangle.corners[(*i + 2) % 3];
     if ((a + c - b - d).norm() > kFlat * (c - a).norm()) return {};
-    return FlatSurface{4, {a, b, c, d}, VisibilityImage::kNothing};
+    return std::array<Eigen::Vector3f, 4>{a, b, c, d};
 }
 
 }  // namespace
 
 BorderFinder::BorderFinder(const std::vector<Triangle>& triangles) {
-    surfaces_.reserve(triangles.size());
-    for (std::uint32_t id = 0; id < triangles.size(); ++id) {
-        const auto& [a, b, c] = triangles[id].corners;
-        FlatSurface surface{3, {a, b, c, c}, VisibilityImage::kNothing};
-        for (const std::uint32_t other : {id ^ 1U, id + 1, id - 1}) {  // as files list them
-            if (other >= triangles.size()) continue;
-            const auto whole = parallelogramOf(triangles[id], triangles[other]);
-            if (!whole) continue;
-            surface = *whole;
-            surface.otherHalf = other;
-            break;
-        }
-        surfaces_.push_back(surface);
+    if (triangles.size() > kMostTriangles) return;
+    for (const Triangle& triangle : triangles) {
+        const auto& [a, b, c] = triangle.corners;
+        surfaces_.push_back({3, {a, b, c, c}, VisibilityImage::kNothing});
+    }
+    for (std::uint32_t id = 0; id + 1 < surfaces_.size(); ++id) {
+        if (surfaces_[id].otherHalf != VisibilityImage::kNothing) continue;
+        const auto corners = parallelogramOf(triangles[id], triangles[id + 1]);
+        if (!corners) continue;
+        surfaces_[id] = {4, *corners, id + 1};
+        surfaces_[id + 1] = {4, *corners, id};
     }
 }
 
 void BorderFinder::find(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
-                        std::vector<Covering>& coverings) const {
+                        Coverings& coverings) const {
+    coverings.alongRows.clear();
+    coverings.alongColumns.clear();
+    if (surfaces_.empty() || !camera.hasPointSpread) return;
     BorderSearch borders(surfaces_, camera, T_c_w, visible);
-    coverings.clear();
-    borders.search(Axis::row, coverings);
-    borders.search(Axis::column, coverings);
+    borders.search(Axis::row, coverings.alongRows);
+    borders.search(Axis::column, coverings.alongColumns);
 }
 
 }  // namespace photonav
