@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // View + Fisher information from a mesh of 2.3 k triangles, one thread: MeshRenderer and
-// photometricInformation() against one ray at a time (same shading) and ViSP's luminance feature,
-// reused from view to view. Prints the fastest of many rounds, both sides in the same run.
+// photometricInformation() against one ray at a time (same shading, but one surface per pixel) and
+// ViSP's luminance feature, reused from view to view. Prints the fastest of many rounds, both sides
+// in the same run.
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <visp3/visual_features/vpFeatureLuminance.h>

@@ -18,9 +18,9 @@ Camera betweenPixels(const Camera& camera);
 ImageF atPixels(const ImageF& between);
 
 /// The certain share of a view's information about the pose, in the direction in which it is
-/// smallest. If the camera moves along a straight edge, the image does not change. But the edge
-/// jumps from pixel to pixel, and sampled gradients are not exactly across it, as if there were
-/// some texture along it.
+/// smallest. If the camera moves along a straight edge, the image does not change. But an edge of
+/// cells jumps from pixel to pixel, and sampled gradients are not exactly across it, as if there
+/// were some texture along it.
 /// - The view is rendered again by betweenPixels(), and interpolated by atPixels(). Texture has the
 ///   same gradients in both views, but jumps are elsewhere. So the information is J^T J_r, where
 ///   J_r has the gradients of the second view (method of instrumental variables, as in

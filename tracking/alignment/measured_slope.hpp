@@ -16,7 +16,7 @@ using DisplacedComparison = std::function<NormalEquations(const Pose& T_away_her
 
 /// The slope M of predicted images over the uncertainty of the pose, relative to J. The gradients
 /// in J are central differences over two pixels. Predicted images are not that smooth: edges of
-/// surfaces and of sharp textures jump from pixel to pixel, and along an oblique edge J is not
+/// cells jump from pixel to pixel, and along an oblique edge J is not
 /// zero, although the image does not change. Therefore the camera is displaced in the model by one
 /// standard deviation to either side along each of six directions, which gives the slope D of the
 /// image over the uncertainty of the pose. An estimate that compares images by J has the

@@ -59,11 +59,11 @@ struct Observed {
     }
 };
 
-/// Share of the information about a direction from which on one block outvotes all others. At the
-/// minimum at most a tenth of its error is left in its residuals.
+/// Share of the information about a direction from which on one block counts as its only source. At
+/// the minimum at most a tenth of such a block's error is left in its residuals.
 constexpr double kOneBlock = 0.9;
 
-/// Covariance of directions in which a block outvotes all others, as of directions that are not
+/// Covariance of directions in which one block is the only source, as of directions that are not
 /// observed, in y / Observed::scale.
 MatrixXd openByOneBlock(const std::vector<ImageBlock>& blocks, const Observed& seen) {
     const Matrix8 inverse = seen.root * seen.root.transpose();

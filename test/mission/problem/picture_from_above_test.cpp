@@ -22,7 +22,8 @@ ImageF pillarAt(double x, double y, double top) {
     return pictureFromAbove(MeshRenderer(std::move(scene)), area, top, 0., kPixel, solids);
 }
 
-/// However near the camera its upper end is, and right below it or beside it.
+/// However near the camera its upper end is, and right below it or beside it. Pixels at its border
+/// are mixed with the floor: what is darker than the mean of both counts.
 TEST(PictureFromAbove, ShowsThinThingsAsWideAsTheyAre) {
     for (const double top : {2.02, 2.1, 2.5, 4.}) {
         for (const double x : {0., 0.3}) {

@@ -336,7 +336,7 @@ TEST(ResidualCovariance, ACornerAtTheBorderDoesNotDetermineThePose) {
 }
 
 /// Texture on a small carpet only: in some direction one block says more than all others together,
-/// and still shows by its residuals how much.
+/// but its residuals still contain its error.
 TEST(ResidualCovariance, ASmallObjectDeterminesThePose) {
     Scene scene = test::floorOf(uniformTexture(0.6F));
     addPlane(scene, {-0.15, -0.1, 0.01}, {0.3, 0., 0.}, {0., 0.3, 0.},
