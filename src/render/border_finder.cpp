@@ -10,67 +10,34 @@
 #include <span>
 
 #include "photometry/simd.hpp"
+#include "render/image_function.hpp"
+#include "render/triangle_cache.hpp"
 
 namespace photonav {
 namespace {
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
-/// The line a x + b y + c = 0 in the image, x and y in pixels; also the function itself.
-struct ImageLine {
-    double a = 0., b = 0., c = 0.;
-    double operator()(double x, double y) const { return a * x + b * y + c; }
-    ImageLine operator-(const ImageLine& other) const {
-        return {a - other.a, b - other.b, c - other.c};
-    }
-};
-
-ImageLine lineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
-    const double a = perRay.x() / camera.fx(), b = perRay.y() / camera.fy();
-    return {a, b, perRay.z() - a * camera.cx() - b * camera.cy()};
-}
-
 /// A flat convex surface in the image (see Rasterizer).
 struct Outline {
-    std::uint32_t id = VisibilityImage::kNothing;
     unsigned sides = 0;
-    std::array<ImageLine, 4> edges{};  ///< not negative inside
-    ImageLine inverseDepth{};          ///< [1/m]
+    std::array<ImageFunction, 4> edges;  ///< not negative inside
+    ImageFunction inverseDepth;          ///< [1/m]
 };
 
-Outline outlineOf(std::uint32_t id, const FlatSurface& surface, const Camera& camera,
-                  const Pose& T_c_w) {
+Outline outlineOf(const FlatSurface& surface, const Camera& camera, const Pose& T_c_w) {
     std::array<Eigen::Vector3d, 4> p;
     for (unsigned i = 0; i < surface.sides; ++i) p[i] = T_c_w * surface.corners[i].cast<double>();
     const Eigen::Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]);
     const double volume = normal.dot(p[0]);
     Outline outline;
-    outline.id = id;
     outline.sides = surface.sides;
-    outline.inverseDepth = lineInPixels(normal / volume, camera);
+    outline.inverseDepth = inPixels(normal / volume, camera);
     for (unsigned i = 0; i < surface.sides; ++i) {
-        outline.edges[i] = lineInPixels(p[i].cross(p[(i + 1) % surface.sides]) / volume, camera);
+        outline.edges[i] = inPixels(p[i].cross(p[(i + 1) % surface.sides]) / volume, camera);
     }
     return outline;
 }
-
-class OutlineCache {
-  public:
-    OutlineCache(const std::vector<FlatSurface>& surfaces, const Camera& camera, const Pose& T_c_w)
-        : surfaces_(surfaces), camera_(camera), T_c_w_(T_c_w) {}
-
-    const Outline& operator[](std::uint32_t id) {
-        Outline& outline = outlines_[id % outlines_.size()];
-        if (outline.id != id) outline = outlineOf(id, surfaces_[id], camera_, T_c_w_);
-        return outline;
-    }
-
-  private:
-    const std::vector<FlatSurface>& surfaces_;
-    const Camera& camera_;
-    const Pose& T_c_w_;
-    std::array<Outline, 257> outlines_;  // prime: two triangles that meet seldom share a slot
-};
 
 /// Direction from a pixel to its neighbour.
 enum class Axis { row, column };
@@ -86,23 +53,23 @@ struct Border {
 /// along the other axis.
 std::optional<Border> borderBetween(const Outline& first, const Outline& second, double x, double y,
                                     Axis axis) {
-    const auto step = [axis](const ImageLine& f) { return axis == Axis::row ? f.a : f.b; };
-    const auto zeroOf = [&](const ImageLine& f) { return -f(x, y) / step(f); };
+    const auto step = [axis](const ImageFunction& f) { return axis == Axis::row ? f.a : f.b; };
+    const auto zeroOf = [&](const ImageFunction& f) { return -f(x, y) / step(f); };
     constexpr double kRounding = 1e-6;  // [pixels]
-    const ImageLine none;
-    const ImageLine *exit = &none, *entry = &none;
+    const ImageFunction none;
+    const ImageFunction *exit = &none, *entry = &none;
     double leaves = kNoEnd, enters = -kNoEnd;
-    for (const ImageLine& edge : std::span(first.edges).first(first.sides)) {
+    for (const ImageFunction& edge : std::span(first.edges).first(first.sides)) {
         if (step(edge) < 0. && zeroOf(edge) < leaves) leaves = zeroOf(*(exit = &edge));
     }
-    for (const ImageLine& edge : std::span(second.edges).first(second.sides)) {
+    for (const ImageFunction& edge : std::span(second.edges).first(second.sides)) {
         if (step(edge) > 0. && zeroOf(edge) > enters) enters = zeroOf(*(entry = &edge));
     }
     // How far the second one is in front of the first one, where both are there.
-    const ImageLine inFront = second.inverseDepth - first.inverseDepth;
+    const ImageFunction inFront = second.inverseDepth - first.inverseDepth;
     const bool secondCovers =
         enters > -kRounding && inFront(x, y) + std::min(enters, 1.) * step(inFront) > 0.;
-    const ImageLine* line = secondCovers ? entry : exit;
+    const ImageFunction* line = secondCovers ? entry : exit;
     if (!secondCovers && step(inFront) > 0. && zeroOf(inFront) < leaves) line = &inFront;
     const double across = std::abs(step(*line));
     const double along = std::abs(axis == Axis::row ? line->b : line->a);
@@ -124,10 +91,7 @@ class BorderSearch {
   public:
     BorderSearch(const std::vector<FlatSurface>& surfaces, const Camera& camera, const Pose& T_c_w,
                  const VisibilityImage& visible)
-        : surfaces_(surfaces),
-          camera_(camera),
-          visible_(visible),
-          outlines_(surfaces, camera, T_c_w) {}
+        : surfaces_(surfaces), camera_(camera), T_c_w_(T_c_w), visible_(visible) {}
 
     /// Adds the shares of pixels beyond the borders across rows or columns.
     void search(Axis axis, std::vector<Covering>& found) {
@@ -152,6 +116,11 @@ class BorderSearch {
         unsigned x, y;
     };
 
+    const Outline& outline(std::uint32_t id) {
+        return outlines_.get(
+            id, [&](Outline& slot) { slot = outlineOf(surfaces_[id], camera_, T_c_w_); });
+    }
+
     void addPair(Pixel first, Pixel second, Axis axis, std::vector<Covering>& found) {
         const std::uint32_t id = visible_.row(first.y)[first.x];
         const std::uint32_t nextId = visible_.row(second.y)[second.x];
@@ -159,8 +128,8 @@ class BorderSearch {
             surfaces_[id].otherHalf == nextId) {
             return;
         }
-        const Outline outline = outlines_[id];  // a copy: the second one may replace it
-        const auto border = borderBetween(outline, outlines_[nextId], first.x, first.y, axis);
+        const Outline copy = outline(id);  // the second one may replace it
+        const auto border = borderBetween(copy, outline(nextId), first.x, first.y, axis);
         if (!border) return;
         const auto add = [&](Pixel pixel, std::uint32_t other, double distance, double sign) {
             const double share = shareBeyond(distance, border->slope);
@@ -177,8 +146,9 @@ class BorderSearch {
 
     const std::vector<FlatSurface>& surfaces_;
     const Camera& camera_;
+    const Pose& T_c_w_;
     const VisibilityImage& visible_;
-    OutlineCache outlines_;
+    TriangleCache<Outline> outlines_;
 };
 
 /// The corner of a triangle that another one does not have; none if they do not share one edge, or

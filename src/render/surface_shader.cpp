@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "photometry/simd.hpp"
+#include "render/image_function.hpp"
+#include "render/triangle_cache.hpp"
 
 namespace photonav {
 namespace {
@@ -31,9 +33,12 @@ constexpr double kFootprint = 0.6;
 
 constexpr int kMaxLevels = 17;  // a texture has at most 32768 texels along a side
 
-/// a x + b y + c over the image, x and y in pixels.
+/// An ImageFunction in single precision.
 struct Affine {
     float a, b, c;
+    Affine() = default;
+    explicit Affine(const ImageFunction& f)
+        : a(static_cast<float>(f.a)), b(static_cast<float>(f.b)), c(static_cast<float>(f.c)) {}
     template <typename Y>  // float or Float
     Float operator()(Float x, Y y) const {
         return a * x + (b * y + c);
@@ -42,7 +47,6 @@ struct Affine {
 
 /// What one triangle looks like from one camera.
 struct Surface {
-    std::uint32_t id = VisibilityImage::kNothing;
     bool edgeOn = false;      ///< the camera lies in its plane: nothing to see
     float nearest, farthest;  ///< bounds of the inverse depth over the corners [1/m]
     Affine inverseDepth;      ///< [1/m]
@@ -57,13 +61,6 @@ struct Surface {
     };
     std::array<Level, kMaxLevels> levels;
 };
-
-Affine affineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
-    const double a = perRay.x() / camera.fx();
-    const double b = perRay.y() / camera.fy();
-    return {static_cast<float>(a), static_cast<float>(b),
-            static_cast<float>(perRay.z() - a * camera.cx() - b * camera.cy())};
-}
 
 /// Prepares the levels that depths between the corners can ask for.
 void setLevels(Surface& surface, const Eigen::Vector2d& texelAtCamera) {
@@ -109,7 +106,7 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     const double largest = std::max({p[0].z(), p[1].z(), p[2].z()});
     surface.nearest = smallest > 1e-6 ? static_cast<float>(1. / smallest) : 1e6F;
     surface.farthest = largest > 1e-6 ? static_cast<float>(1. / largest) : 1e6F;
-    surface.inverseDepth = affineInPixels(normal / distance, camera);
+    surface.inverseDepth = Affine(inPixels(normal / distance, camera));
 
     if (texture.uniform()) return;
 
@@ -124,8 +121,8 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     const Eigen::Vector2d stepB = texel(2) - texel(0);
     const Eigen::Vector3d uGradient = stepA.x() * alongA + stepB.x() * alongB;
     const Eigen::Vector3d vGradient = stepA.y() * alongA + stepB.y() * alongB;
-    surface.u = affineInPixels(uGradient, camera);
-    surface.v = affineInPixels(vGradient, camera);
+    surface.u = Affine(inPixels(uGradient, camera));
+    surface.v = Affine(inPixels(vGradient, camera));
 
     // The map pixel -> texel is projective, H / inverse depth: its area factor is
     // det H / (inverse depth)^3, and det H = normal . (uGradient x vGradient) / distance / (fx fy).
@@ -138,25 +135,18 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     setLevels(surface, texelAtCamera);
 }
 
-/// Cache of the surfaces seen so far in this view; a triangle replaces an older one in the same
-/// slot.
+/// The surfaces of a view.
 class SurfaceCache {
   public:
-    static constexpr std::size_t kSlots = 256;
-    static std::size_t slotOf(std::uint32_t id) { return id % kSlots; }
-
     SurfaceCache(const Scene& scene, const std::vector<MipTexture>& textures, const Camera& camera,
                  const Pose& T_c_w)
         : scene_(scene), textures_(textures), camera_(camera), T_c_w_(T_c_w) {}
 
     const Surface& operator[](std::uint32_t id) {
-        Surface& surface = surfaces_[slotOf(id)];
-        if (surface.id != id) {
+        return surfaces_.get(id, [&](Surface& surface) {
             const Triangle& triangle = scene_.triangles[id];
-            surface.id = id;
             setUp(surface, triangle, textures_[triangle.texture], camera_, T_c_w_);
-        }
-        return surface;
+        });
     }
 
   private:
@@ -164,7 +154,7 @@ class SurfaceCache {
     const std::vector<MipTexture>& textures_;
     const Camera& camera_;
     const Pose& T_c_w_;
-    std::array<Surface, kSlots> surfaces_;
+    TriangleCache<Surface> surfaces_;
 };
 
 /// i modulo n for whole numbers; within [0, n) whatever i is.
@@ -319,12 +309,13 @@ Float greysAt(const Surface& surface, Float x, Float y, unsigned count) {
 
 /// Indices of coverings, those of the same slot of the cache one after the other.
 void groupBySlot(std::span<const Covering> coverings, std::vector<unsigned>& grouped) {
-    std::array<unsigned, SurfaceCache::kSlots + 1> begin{};
-    for (const Covering& covering : coverings) ++begin[SurfaceCache::slotOf(covering.id) + 1];
+    using Cache = TriangleCache<Surface>;
+    std::array<unsigned, Cache::kSlots + 1> begin{};
+    for (const Covering& covering : coverings) ++begin[Cache::slotOf(covering.id) + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     grouped.resize(coverings.size());
     for (unsigned i = 0; i < coverings.size(); ++i) {
-        grouped[begin[SurfaceCache::slotOf(coverings[i].id)]++] = i;
+        grouped[begin[Cache::slotOf(coverings[i].id)]++] = i;
     }
 }
 

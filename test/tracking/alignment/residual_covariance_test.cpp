@@ -304,6 +304,13 @@ TEST(ResidualCovariance, FewBlocksDoNotMakeItSingular) {
     }
 }
 
+/// A prior of standard deviations `sigma` whose mean is wrong by a share of them.
+UncertainPose priorBeside(const Pose& truth, const Vector6& sigma, double share,
+                          std::normal_distribution<double>& normal, std::mt19937_64& random) {
+    const Vector6 error = sigma.unaryExpr([&](double s) { return share * s * normal(random); });
+    return {expSE3(error) * truth, Matrix6(sigma.cwiseAbs2().asDiagonal())};
+}
+
 /// A white wall fills the view. Beyond its end, just outside of the view, the corner of a grey
 /// floor may be seen from poses within the prior: a few pixels that fit exactly once they are out
 /// of view.
@@ -324,9 +331,7 @@ TEST(ResidualCovariance, ACornerAtTheBorderDoesNotDetermineThePose) {
         const ImageF image = test::photographed(world, camera, truth).intensity;
         double nees = 0.;
         for (int i = 0; i < 30; ++i) {
-            const Vector6 error = sigma.unaryExpr([&](double s) { return s * normal(random); });
-            const UncertainPose prior{expSE3(error) * truth,
-                                      Matrix6(sigma.cwiseAbs2().asDiagonal())};
+            const UncertainPose prior = priorBeside(truth, sigma, 1., normal, random);
             const Alignment a = aligner.align(test::noisy(image, 0.03, random), prior);
             nees += test::neesOf(a, truth) / 30.;
         }
@@ -358,8 +363,7 @@ TEST(ResidualCovariance, ASmallObjectDeterminesThePose) {
         const Pose truth = lookFrom({x, y, 1.4}, test::kDown, yaw);
         const ImageF image = test::photographed(world, camera, truth).intensity;
         // The object is 20 pixels wide: farther off, the alignment would not find it.
-        const Vector6 error = sigma.unaryExpr([&](double s) { return 0.3 * s * normal(random); });
-        const UncertainPose prior{expSE3(error) * truth, Matrix6(sigma.cwiseAbs2().asDiagonal())};
+        const UncertainPose prior = priorBeside(truth, sigma, 0.3, normal, random);
         const Alignment a = aligner.align(test::noisy(image, 0.01, random), prior);
         nees += test::neesOf(a, truth) / kImages;
         const Matrix6 unit = sigma.cwiseInverse().asDiagonal();
