@@ -5,6 +5,7 @@
 // table of docs/experiments/tracking.md.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <numbers>
@@ -53,6 +54,24 @@ ImageF otherLight(const ImageF& ideal, Random& random) {
     return image;
 }
 
+/// A lamp that was not there, and a lens that loses 15 % of the light in the corners: no polynomial
+/// of second order.
+ImageF lampAndLens(const ImageF& ideal, Random& random) {
+    ImageF image = independentNoise(ideal, random);
+    const float width = image.getWidth(), height = image.getHeight();
+    std::uniform_real_distribution<float> place(0.F, 1.F);
+    const float lampU = place(random) * width, lampV = place(random) * height;
+    for (unsigned v = 0; v < image.getHeight(); ++v) {
+        for (unsigned u = 0; u < image.getWidth(); ++u) {
+            const float lamp = std::hypot(u - lampU, v - lampV) / (0.3F * width);
+            const float lens = 2.F * std::hypot(u - 0.5F * width, v - 0.5F * height) / width;
+            const float slope = 1.F / (1.F + 0.08F * lens * lens);  // about cos^4 of the angle
+            image[v][u] *= (0.95F + 0.1F * std::exp(-0.5F * lamp * lamp)) * slope * slope;
+        }
+    }
+    return image;
+}
+
 ImageF realCamera(const ImageF& ideal, Random& random) {
     std::uniform_real_distribution<double> gain(0.8, 1.2);
     CameraNoiseOptions options;
@@ -65,7 +84,8 @@ const std::vector<std::pair<std::string, Picture>>& pictures() {
         {"no noise", [](const ImageF& ideal, Random&) { return ideal; }},
         {"noise", independentNoise},
         {"real camera", realCamera},
-        {"other light", otherLight}};
+        {"other light", otherLight},
+        {"lamp and lens", lampAndLens}};
     return all;
 }
 

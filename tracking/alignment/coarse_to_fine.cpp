@@ -7,6 +7,7 @@
 
 #include "alignment/certain_information.hpp"
 #include "alignment/conclusion.hpp"
+#include "alignment/light_field.hpp"
 #include "alignment/measured_slope.hpp"
 #include "alignment/search_grid.hpp"
 #include "geometry/constants.hpp"
@@ -102,6 +103,12 @@ class Search {
 
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
+    if (options_.modelErrors.light > 0.) {
+        const LightField light(comparison_.blocks(level_, T_c_w, exposure, loss_),
+                               comparison_.camera(level_), options_.modelErrors.light,
+                               1. / weight());
+        at.equations = light.eliminatedFrom(at.equations);
+    }
     ++iterations_;
     isCompared_ = true;
     shared_.reset();

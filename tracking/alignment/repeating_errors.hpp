@@ -8,6 +8,8 @@
 
 namespace photonav {
 
+class LightField;
+
 /// Standard deviations of errors that repeat from image to image. The pose absorbs them, so that
 /// they do not appear in the residuals, and they do not average out over many images.
 struct ModelErrors {
@@ -19,9 +21,10 @@ struct ModelErrors {
     /// mean over the image is eliminated like the exposure (withoutBlur()); its variation over the
     /// image is smooth.
     double blur = 0.;
-    /// Share of the light that is lost in the corners of the image, after correction. It grows with
-    /// the square of the distance to the principal point.
-    double vignetting = 0.;
+    /// Gain that varies slowly over the image: vignetting, and light that is not the model's. It is
+    /// estimated with the pose (LightField); this is its prior's standard deviation [share of the
+    /// light at the edge of the image].
+    double light = 0.;
     double surface = 0.;     ///< displacement of the surfaces along their normals [m]
     double depthScale = 0.;  ///< relative error of a depth sensor's scale and registration
 };
@@ -33,12 +36,12 @@ Matrix6 covarianceByScale(double share, const Pose& motion);
 /// Effect of all errors that repeat but for ModelErrors::depthScale: covariance of the sum of the
 /// blocks' Atr.
 ///
-/// A gain that varies slowly over the image (shading, changed light) repeats, too. Its variance is
-/// estimated by the covariance of the gains of neighbouring blocks. Over little texture the pose
-/// absorbs vignetting, and these gains show nothing of it: ModelErrors::vignetting.
+/// Shading that the light field does not follow repeats, too. Its variance is estimated by the
+/// covariance of the gains of neighbouring blocks.
+/// @param light the field that was eliminated from the blocks: errors that it explains do no harm
 /// @param x the step to the minimum of the image alone: pose (left perturbation), gain, bias
 /// @param camera camera of the level at which the blocks were compared
-Matrix8 scatterOfRepeatingErrors(const std::vector<ImageBlock>& blocks, const Vector8& x,
-                                 const ModelErrors& errors, const Camera& camera);
+Matrix8 scatterOfRepeatingErrors(const std::vector<ImageBlock>& blocks, const LightField& light,
+                                 const Vector8& x, const ModelErrors& errors, const Camera& camera);
 
 }  // namespace photonav

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alignment/light_field.hpp"
 #include "geometry/eigensystem.hpp"
 
 namespace photonav {
@@ -59,16 +60,44 @@ struct Observed {
     }
 };
 
+/// The minimum of the image alone, the light field eliminated.
+struct Minimum {
+    LightField light;
+    std::vector<ImageBlock> blocks;  ///< without the field
+    Matrix8 H;
+    Vector8 gradient;
+    Observed seen;
+    Vector8 x;  ///< the step of the pose to the minimum, and of the exposure by the pose
+};
+
+Minimum minimumOf(const std::vector<ImageBlock>& whole, const PhotometricOptions& photometric,
+                  const std::optional<ExposurePrior>& prior, const ModelErrors& errors,
+                  const Camera& camera) {
+    const double noise = photometric.sigma * photometric.sigma / photometric.scale;
+    const LightField light(whole, camera, errors.light, noise);
+    std::vector<ImageBlock> blocks = light.eliminatedFrom(whole);
+    Matrix8 H = light.priorAtA();
+    Vector8 gradient = light.priorAtr();
+    for (const ImageBlock& block : blocks) {
+        H += block.AtA;
+        gradient += block.Atr;
+    }
+    const Observed seen(H, photometric, prior);
+    const Vector8 x = seen.root * (seen.root.transpose() * gradient);
+    return {light, std::move(blocks), H, gradient, seen, x};
+}
+
 /// Share of the information about a direction from which on one block counts as its only source. At
 /// the minimum at most a tenth of such a block's error is left in its residuals.
 constexpr double kOneBlock = 0.9;
 
 /// Covariance of directions in which one block is the only source, as of directions that are not
 /// observed, in y / Observed::scale.
-MatrixXd openByOneBlock(const std::vector<ImageBlock>& blocks, const Observed& seen) {
+MatrixXd openByOneBlock(const Minimum& minimum) {
+    const Observed& seen = minimum.seen;
     const Matrix8 inverse = seen.root * seen.root.transpose();
     MatrixXd covariance = MatrixXd::Zero(seen.root.cols(), seen.root.cols());
-    for (const ImageBlock& block : blocks) {
+    for (const ImageBlock& block : minimum.blocks) {
         if (block.AtA.cwiseProduct(inverse).sum() < kOneBlock) continue;  // trace of its share
         const Eigen::SelfAdjointEigenSolver<MatrixXd> share(seen.root.transpose() * block.AtA *
                                                             seen.root);
@@ -85,8 +114,9 @@ MatrixXd openByOneBlock(const std::vector<ImageBlock>& blocks, const Observed& s
 /// Columns: H^-1 s_b with s_b = (1 - A_b H^-1)^-1 (g_b - A_b x), in y / Observed::scale, in which H
 /// is the identity: how much it changes without a block. With H^-1 = L L^T it is
 /// L (1 - L^T A_b L)^-1 L^T (...), which is symmetric and smaller.
-MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& seen,
-                        const Vector8& x) {
+MatrixXd changesWithout(const Minimum& minimum) {
+    const std::vector<ImageBlock>& blocks = minimum.blocks;
+    const Observed& seen = minimum.seen;
     using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
     using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;  // not on the heap
     const Eigen::Index size = seen.root.cols();
@@ -95,7 +125,7 @@ MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& s
         const Root weighted = blocks[b].AtA.lazyProduct(seen.root);
         const Small share = seen.root.transpose().lazyProduct(weighted);
         const Small rest = (1. + kOpen) * Small::Identity(size, size) - share;
-        const Vector8 gradient = blocks[b].Atr - blocks[b].AtA * x;
+        const Vector8 gradient = blocks[b].Atr - blocks[b].AtA * minimum.x;
         const Few seenGradient = seen.root.transpose().lazyProduct(gradient);
         const Eigen::LLT<Small> cholesky(rest);
         // A block with nearly all of the information, summed in single precision, is not definite.
@@ -124,19 +154,6 @@ MatrixXd covarianceOf(const MatrixXd& draws) {
     return 1. / std::max(1. - lack, 0.5) * covariance + std::max(2. * lack - 1., 0.) * equal;
 }
 
-struct Sum {
-    Matrix8 AtA = Matrix8::Zero();
-    Vector8 Atr = Vector8::Zero();
-};
-Sum sumOf(const std::vector<ImageBlock>& blocks) {
-    Sum sum;
-    for (const ImageBlock& block : blocks) {
-        sum.AtA += block.AtA;
-        sum.Atr += block.Atr;
-    }
-    return sum;
-}
-
 /// The blocks with weights by which each one with more texture than noise counts alike, whatever
 /// its contrast. The weights' mean over the pixels is 1.
 /// @param noise variance of a pixel [grey value^2]
@@ -163,23 +180,18 @@ std::vector<ImageBlock> weightedByArea(std::vector<ImageBlock> blocks, double fo
 /// follows the object, and the second one the rest of the scene. The covariance D of
 /// d follows from the scatter of the blocks. The pose may be either estimate if d is larger than by
 /// chance: d d^T + D, less what chance explains.
-/// @param x the step to the minimum of the image alone
-/// @param changes changesWithout() at x
-/// @param byArea weightedByArea()
+/// @param byContrast,byArea the minima of the two weights
+/// @param changes changesWithout() of the first one
 /// @param covariance of the pose; it and the result refer to y / Observed::scale
-MatrixXd disagreement(const Observed& seen, const Vector8& x, const MatrixXd& changes,
-                      const std::vector<ImageBlock>& byArea, const PhotometricOptions& photometric,
-                      const std::optional<ExposurePrior>& prior, const MatrixXd& covariance) {
+MatrixXd disagreement(const Minimum& byContrast, const Minimum& byArea, const MatrixXd& changes,
+                      const MatrixXd& covariance) {
     const auto size = covariance.rows();
-    const auto [H, gradient] = sumOf(byArea);
-    const Observed area(H, photometric, prior);
-    if (area.V.cols() < size) return MatrixXd::Zero(size, size);
-    Vector8 xByArea = area.root * (area.root.transpose() * gradient);
-    if (prior) xByArea.tail<2>() += H.bottomRightCorner<2, 2>().ldlt().solve(gradient.tail<2>());
+    const Observed& seen = byContrast.seen;
+    if (byArea.seen.V.cols() < size) return MatrixXd::Zero(size, size);
     const MatrixXd toScaled = seen.scale.cwiseInverse().asDiagonal() * seen.toY;
-    const Eigen::VectorXd d = toScaled * (xByArea - x).head<6>();
+    const Eigen::VectorXd d = toScaled * (byArea.x - byContrast.x).head<6>();
     const MatrixXd draws =
-        toScaled * area.root.topRows<6>() * changesWithout(byArea, area, xByArea) - changes;
+        toScaled * byArea.seen.root.topRows<6>() * changesWithout(byArea) - changes;
     const MatrixXd chance = covarianceOf(draws) + kNoDifference * covariance;
     const double ratio = d.dot(chance.ldlt().solve(d)) / static_cast<double>(size);
     if (!(ratio > kMostByChance)) return MatrixXd::Zero(size, size);
@@ -201,31 +213,35 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                                         const std::optional<ExposurePrior>& prior,
                                         const ModelErrors& errors, const Camera& camera,
                                         const Pose& toModel) {
-    const auto [H, gradient] = sumOf(blocks);
-    const Observed seen(H, photometric, prior);
+    const Minimum byContrast = minimumOf(blocks, photometric, prior, errors, camera);
+    const auto& [light, rest, H, gradient, seen, x] = byContrast;
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
     if (seen.V.cols() == 0) return result;
-    const Vector8 x = seen.root * (seen.root.transpose() * gradient);
 
     const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
     const MatrixXd repeating =
-        covariance(scatterOfRepeatingErrors(blocks, x, errors, camera)) +
+        covariance(scatterOfRepeatingErrors(blocks, light, x, errors, camera)) +
         seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
-    const MatrixXd changes = changesWithout(blocks, seen, x);
-    const MatrixXd byOneBlock = openByOneBlock(blocks, seen);
-    const MatrixXd scatter =
-        seen.scale.asDiagonal() * (covarianceOf(changes) + byOneBlock) * seen.scale.asDiagonal();
+    const MatrixXd changes = changesWithout(byContrast);
+    const MatrixXd scatter = seen.scale.asDiagonal() *
+                             (covarianceOf(changes) + openByOneBlock(byContrast)) *
+                             seen.scale.asDiagonal();
     const MatrixXd whole =
         repeating + scatter + covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
     const double noise = std::max(std::pow(photometric.sigma, 2), kPixelNoise * kPixelNoise);
+    Minimum byArea =
+        minimumOf(weightedByArea(blocks, camera.fx(), noise), photometric, prior, errors, camera);
+    if (prior) {  // by these weights the exposure is another one
+        byArea.x.tail<2>() +=
+            byArea.H.bottomRightCorner<2, 2>().ldlt().solve(byArea.gradient.tail<2>());
+    }
     const Eigen::VectorXd unit = seen.scale.cwiseInverse();
     const MatrixXd disagreeing =
         seen.scale.asDiagonal() *
-        disagreement(seen, x, changes, weightedByArea(blocks, camera.fx(), noise), photometric,
-                     prior, unit.asDiagonal() * whole * unit.asDiagonal()) *
+        disagreement(byContrast, byArea, changes, unit.asDiagonal() * whole * unit.asDiagonal()) *
         seen.scale.asDiagonal();
     if (!whole.allFinite()) return result;
     result.repeating += seen.V * (repeating + disagreeing) * seen.V.transpose();

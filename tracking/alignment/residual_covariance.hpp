@@ -23,10 +23,10 @@ struct MeasuredInformation {
 ///     C = n/(n-7) H^-1 (sum s_b s_b^T) H^-1 + C_repeating,  s_b = (1 - A_b H^-1)^-1 (g_b - A_b x).
 /// This is the variance by leaving out one block at a time ("jackknife", the cluster-robust "CR3").
 /// Blocks count as independent; the pixels of a block may be correlated. It follows from residuals
-/// of any size and cause, and does not depend on an assumed image noise. The exposure is eliminated
-/// first. A direction about which one block has at least nine tenths of the information counts as
-/// not observed: such a block fits nearly exactly, wherever it leads. Errors that repeat from image
-/// to image: scatterOfRepeatingErrors().
+/// of any size and cause, and does not depend on an assumed image noise. Exposure and light field
+/// (LightField) are eliminated first. A direction about which one block has at least nine tenths of
+/// the information counts as not observed: such a block fits nearly exactly, wherever it leads.
+/// Errors that repeat from image to image: scatterOfRepeatingErrors().
 ///
 /// Blocks are not independent if an object has moved since the model was made: all of its blocks
 /// lead to the same wrong pose. The pose is estimated a second time with weights by which every

@@ -170,7 +170,7 @@ AlignmentOptions photographOptions(double blur) {
 AlignmentOptions realCameraOptions(double blur) {
     AlignmentOptions options = photographOptions(blur);
     options.exposure = {.gainSigma = 0.1, .offsetSigma = 0.003};
-    options.modelErrors.vignetting = kVignettingError;
+    options.modelErrors.light = kLightError;
     return options;
 }
 
