@@ -26,6 +26,9 @@ constexpr double kHardlyNoise = 0.8;
 /// Relative noise of the cost. The used pixels change from pose to pose, and with them the cost, by
 /// more than small steps do. (Steps by J M do not quite follow the gradient of the cost, either.)
 constexpr double kCostNoise = 1e-3;
+/// At full size, eliminating the light field takes half as long as comparing a view. So the search
+/// does it only if it moves the pose by more than this [standard deviations].
+constexpr double kMovedByLight = 1.;
 /// Displacement of the texture that a covariance allows [standard deviations].
 constexpr double kTextureSigmas = 1.5;
 
@@ -99,11 +102,13 @@ class Search {
     bool isCompared_ = false;            ///< at_ is the last comparison
     std::optional<SharedSlope> shared_;  ///< of the last comparison, once it was asked for
     bool done_ = false;                  ///< with this level, as the last step was small
+    bool isLightSearched_ = false;       ///< the light field is eliminated at full size, too
+    double lastSigmas_ = 0.;             ///< length of the step of measured()
 };
 
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
-    if (options_.modelErrors.light > 0.) {
+    if (options_.modelErrors.light > 0. && (level_ > 0 || isLightSearched_)) {
         const LightField light(comparison_.blocks(level_, T_c_w, exposure, loss_),
                                comparison_.camera(level_), options_.modelErrors.light,
                                1. / weight());
@@ -255,7 +260,9 @@ MeasuredInformation Search::measured() {
     image.equations.information *= options_.informationScale;
     image.equations.rhs *= options_.informationScale;
     image.repeating /= options_.informationScale;
-    at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
+    const Vector6 xi = step(image.equations, 0.);
+    lastSigmas_ = std::sqrt(xi.dot(image.equations.information * xi) / 6.);
+    at_.T_c_w = expSE3(xi) * at_.T_c_w;
     relateToPrior(at_);
     const bool isNoisy = options_.modelNoise == ModelNoise::inCovariance;
     return isNoisy ? respondingBy(shared().slope, image) : image;
@@ -309,7 +316,15 @@ Alignment Search::run(const Pose& T_start) {
         if (isSmall(logSE3(at_.T_c_w * before.inverse()), equations().information)) break;
     }
     MeasuredInformation image{equations(), Matrix6::Zero()};
-    if (options_.measureCovariance && converged && at_.equations.count > 0.) image = measured();
+    if (options_.measureCovariance && converged && at_.equations.count > 0.) {
+        image = measured();
+        if (options_.modelErrors.light > 0. && lastSigmas_ > kMovedByLight) {
+            isLightSearched_ = true;
+            at_ = evaluate(at_.T_c_w, at_.exposure);
+            converged = descend();
+            if (converged) image = measured();
+        }
+    }
     Alignment result;
     result.T_c_w = at_.T_c_w;
     result.exposure = at_.exposure;
