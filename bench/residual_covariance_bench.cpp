@@ -54,8 +54,8 @@ ImageF otherLight(const ImageF& ideal, Random& random) {
     return image;
 }
 
-/// A lamp that was not there, and a lens that loses 15 % of the light in the corners: no polynomial
-/// of second order.
+/// A lamp that was not there, and a lens that loses 14 % of the light at the sides and a fifth in
+/// the corners: no polynomial of second order.
 ImageF lampAndLens(const ImageF& ideal, Random& random) {
     ImageF image = independentNoise(ideal, random);
     const float width = image.getWidth(), height = image.getHeight();

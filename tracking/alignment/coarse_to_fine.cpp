@@ -27,8 +27,9 @@ constexpr double kHardlyNoise = 0.8;
 /// more than small steps do. (Steps by J M do not quite follow the gradient of the cost, either.)
 constexpr double kCostNoise = 1e-3;
 /// At full size, eliminating the light field takes half as long as comparing a view. So the search
-/// does it only if it moves the pose by more than this [standard deviations].
-constexpr double kMovedByLight = 1.;
+/// does it only if the step of measured(), which knows of the field, is longer than this [standard
+/// deviations, root mean square over the axes].
+constexpr double kFarStep = 1.;
 /// Displacement of the texture that a covariance allows [standard deviations].
 constexpr double kTextureSigmas = 1.5;
 
@@ -69,6 +70,7 @@ class Search {
     bool isTextureCertain();
     const SharedSlope& shared();
     MeasuredInformation measured();
+    void searchWithLight(MeasuredInformation& image);
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
     void relateToPrior(Iterate& at) const;
@@ -268,6 +270,20 @@ MeasuredInformation Search::measured() {
     return isNoisy ? respondingBy(shared().slope, image) : image;
 }
 
+/// Goes on at full size with the light field, and measures again. Without a minimum the pose of
+/// before remains.
+void Search::searchWithLight(MeasuredInformation& image) {
+    const Iterate before = at_;
+    isLightSearched_ = true;
+    at_ = evaluate(at_.T_c_w, at_.exposure);
+    if (descend()) {
+        image = measured();
+    } else {
+        at_ = before;
+        isCompared_ = false;
+    }
+}
+
 /// It matters only where the residuals exceed the noise.
 double Search::finerThanModel(const NormalEquations& e) const {
     const double noise = options_.trust.residualSigmas * options_.photometric.sigma;
@@ -318,12 +334,7 @@ Alignment Search::run(const Pose& T_start) {
     MeasuredInformation image{equations(), Matrix6::Zero()};
     if (options_.measureCovariance && converged && at_.equations.count > 0.) {
         image = measured();
-        if (options_.modelErrors.light > 0. && lastSigmas_ > kMovedByLight) {
-            isLightSearched_ = true;
-            at_ = evaluate(at_.T_c_w, at_.exposure);
-            converged = descend();
-            if (converged) image = measured();
-        }
+        if (options_.modelErrors.light > 0. && lastSigmas_ > kFarStep) searchWithLight(image);
     }
     Alignment result;
     result.T_c_w = at_.T_c_w;

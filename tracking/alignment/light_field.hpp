@@ -15,7 +15,8 @@ namespace photonav {
 /// the normal equations, as the exposure is. For the other unknowns x (pose, gain, offset) the most
 /// likely field has the coefficients constant + slope x.
 ///
-/// The gain of a block is that in its middle, and the field is linearised at none: x is a step.
+/// The gain of a block is that in its middle. Residuals are those without a field, and x is a step
+/// from the pose and exposure at which the blocks were compared.
 class LightField {
   public:
     /// @param camera camera of the level at which the blocks were compared
@@ -29,7 +30,7 @@ class LightField {
     /// The equations for x if the field is the most likely one. The sums over the blocks, with
     /// priorAtA() and priorAtr(), are the Schur complement of the equations for x and the field.
     std::vector<ImageBlock> eliminatedFrom(std::vector<ImageBlock> blocks) const;
-    /// The same for the sums over the whole image.
+    /// The same for the sums over the whole image, prior included. The loss is that at x = 0.
     NormalEquations eliminatedFrom(NormalEquations e) const;
     /// The part of a change of the block's Atr that no field explains.
     /// @param change of Atr, caused by an error of the model

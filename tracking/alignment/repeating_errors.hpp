@@ -22,8 +22,8 @@ struct ModelErrors {
     /// image is smooth.
     double blur = 0.;
     /// Gain that varies slowly over the image: vignetting, and light that is not the model's. It is
-    /// estimated with the pose (LightField); this is its prior's standard deviation [share of the
-    /// light at the edge of the image].
+    /// estimated with the pose (LightField) if the covariance is measured; this is its prior's
+    /// standard deviation [share of the light at the edge of the image].
     double light = 0.;
     double surface = 0.;     ///< displacement of the surfaces along their normals [m]
     double depthScale = 0.;  ///< relative error of a depth sensor's scale and registration
@@ -38,7 +38,8 @@ Matrix6 covarianceByScale(double share, const Pose& motion);
 ///
 /// Shading that the light field does not follow repeats, too. Its variance is estimated by the
 /// covariance of the gains of neighbouring blocks.
-/// @param light the field that was eliminated from the blocks: errors that it explains do no harm
+/// @param blocks of the image, the light field not eliminated
+/// @param light the field that was fitted to them: errors that it explains do no harm
 /// @param x the step to the minimum of the image alone: pose (left perturbation), gain, bias
 /// @param camera camera of the level at which the blocks were compared
 Matrix8 scatterOfRepeatingErrors(const std::vector<ImageBlock>& blocks, const LightField& light,

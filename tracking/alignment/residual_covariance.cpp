@@ -214,7 +214,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                                         const ModelErrors& errors, const Camera& camera,
                                         const Pose& toModel) {
     const Minimum byContrast = minimumOf(blocks, photometric, prior, errors, camera);
-    const auto& [light, rest, H, gradient, seen, x] = byContrast;
+    const Observed& seen = byContrast.seen;
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
     if (seen.V.cols() == 0) return result;
@@ -223,14 +223,16 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
     const MatrixXd repeating =
-        covariance(scatterOfRepeatingErrors(blocks, light, x, errors, camera)) +
+        covariance(
+            scatterOfRepeatingErrors(blocks, byContrast.light, byContrast.x, errors, camera)) +
         seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
     const MatrixXd changes = changesWithout(byContrast);
     const MatrixXd scatter = seen.scale.asDiagonal() *
                              (covarianceOf(changes) + openByOneBlock(byContrast)) *
                              seen.scale.asDiagonal();
     const MatrixXd whole =
-        repeating + scatter + covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
+        repeating + scatter +
+        covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * byContrast.H);
     const double noise = std::max(std::pow(photometric.sigma, 2), kPixelNoise * kPixelNoise);
     Minimum byArea =
         minimumOf(weightedByArea(blocks, camera.fx(), noise), photometric, prior, errors, camera);
@@ -249,7 +251,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     equations.information = seen.toY.transpose() * (whole + disagreeing).ldlt().solve(seen.toY);
     equations.information =
         0.5 * (equations.information + equations.information.transpose()).eval();
-    equations.rhs = equations.information * x.head<6>();
+    equations.rhs = equations.information * byContrast.x.head<6>();
     return result;
 }
 

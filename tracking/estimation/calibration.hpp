@@ -62,10 +62,10 @@ std::optional<double> calibrateDepthError(std::span<const AlignmentError> errors
 /// AreaSensor's with the point spread added: 0.04 to 0.11, root mean square over poses [pixels^2].
 inline constexpr double kBlurError = 0.1;
 
-/// How much the gain varies over an image (ModelErrors::light). A correction leaves about as much
-/// of a lens's vignetting; uncorrected lenses lose 10 to 50 % in the corners. Over a whole image
-/// the pixels decide: with 0.1 poses are the same. Where the model covers a small part of the
-/// image, the field cannot be told from the pose, and this says how far the pose may follow it.
+/// Standard deviation of each term of the gain over an image (ModelErrors::light): a few percent of
+/// the light, as a correction leaves of a lens's vignetting. Over a whole image the pixels decide:
+/// with 0.1 poses are the same. Where the model covers a small part of the image, the field cannot
+/// be told from the pose, and this says how far the pose may follow it.
 inline constexpr double kLightError = 0.03;
 
 /// Options for images that were not rendered from the model: covariances follow from the residuals.

@@ -73,6 +73,7 @@ TEST(LightField, EliminationIsTheSchurComplement) {
     EXPECT_LT((eliminated.Atr - right).norm(), 1e-10 * right.norm());
     const double gained = g.tail<5>().dot(H.bottomRightCorner<5, 5>().ldlt().solve(g.tail<5>()));
     EXPECT_NEAR(eliminated.loss, -gained, 1e-10 * gained);
+    EXPECT_NEAR(eliminated.sumSquares, -gained, 1e-10 * gained);
 
     // What is left of the blocks at a step and its field is what is left of the dense equations.
     const Vector8 x = Vector8::Random();
@@ -91,13 +92,11 @@ TEST(LightField, OnlyThePriorIsLeftOfAField) {
     for (const double noise : {1., 1e3}) {
         const LightField light(blocks, fieldCamera(), kFieldSigma, noise);
         Matrix8 expected = Matrix8::Zero();
-        double whole = 0.;
         for (int term = 0; term < 5; ++term) {
             Vector8 sum = Vector8::Zero();
             for (const ImageBlock& block : blocks) {
                 const Vector8 change = kFieldSigma * termsAt(block)[term] * block.AtA.col(6);
                 sum += light.unexplained(block, change);
-                whole += change.norm();
             }
             expected += sum * sum.transpose();
         }
@@ -153,6 +152,7 @@ TEST(LightField, MakesUpForALensAndForLightFromTheSide) {
     std::cout << "errors [m]: " << with << ", not estimated " << without
               << "; NEES per dof: " << nees << ", " << neesWithout << '\n';
     EXPECT_LT(with, 0.1 * without);
+    EXPECT_GT(nees, 0.2);
     EXPECT_LT(nees, 2.);
 }
 
