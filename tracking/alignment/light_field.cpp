@@ -52,6 +52,7 @@ LightField::Terms LightField::termsAt(const ImageBlock& block) const {
 }
 
 std::vector<ImageBlock> LightField::eliminatedFrom(std::vector<ImageBlock> blocks) const {
+    if (known_ == 0.) return blocks;  // there is no field
     for (ImageBlock& block : blocks) {
         const Terms terms = termsAt(block);
         Matrix8 withField = Matrix8::Identity();  // the block's gain follows x

@@ -156,5 +156,44 @@ TEST(LightField, MakesUpForALensAndForLightFromTheSide) {
     EXPECT_LT(nees, 2.);
 }
 
+/// Over texture that is as weak as the vignetting, the pose absorbs it unless it is estimated, and
+/// no residual shows it.
+TEST(LightField, VignettingOverLittleTextureIsEstimated) {
+    const MeshRenderer floor(test::floorOf(valueNoise(
+        {.size = {20., 20.}, .cells = {1.5, 0.5, 0.2}, .amplitudes = {0.012, 0.006, 0.006}})));
+    const Camera camera = makeCamera(188, 120, 1.2217);
+    std::mt19937_64 random(1);
+    const auto errorAndNees = [&](double light) -> Eigen::Vector2d {  // means
+        AlignmentOptions options = realCameraOptions();
+        options.modelErrors.light = light;
+        DenseAligner aligner(floor, camera, options);
+        constexpr int kCount = 10;
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        for (int i = 0; i < kCount; ++i) {
+            const Pose truth = lookFrom({0.3 * i, -0.2 * i, 1.5}, test::kDown);
+            ImageF image = test::photographed(floor, camera, truth).intensity;
+            for (unsigned v = 0; v < image.getHeight(); ++v) {
+                for (unsigned u = 0; u < image.getWidth(); ++u) {
+                    const Eigen::Vector2d centre(0.5 * camera.width, 0.5 * camera.height);
+                    const double share = (Eigen::Vector2d(u, v) - centre).norm() / centre.norm();
+                    image[v][u] *= static_cast<float>(1. - 0.03 * share * share);
+                }
+            }
+            image = test::noisy(image, 0.005, random);
+            const UncertainPose prior{truth, 1e-2 * Matrix6::Identity()};
+            const Alignment a = aligner.align(image, prior);
+            const double error = (a.T_c_w * truth.inverse()).translation().norm();
+            sum += Eigen::Vector2d(error, test::neesOf(a, truth)) / kCount;
+        }
+        return sum;
+    };
+    const Eigen::Vector2d with = errorAndNees(realCameraOptions().modelErrors.light);
+    const Eigen::Vector2d without = errorAndNees(0.);
+    std::cout << "error [m] and NEES per dof: " << with.transpose() << ", not estimated "
+              << without.transpose() << '\n';
+    EXPECT_LT(with[0], 0.5 * without[0]);
+    EXPECT_LT(with[1], 2.);
+}
+
 }  // namespace
 }  // namespace photonav
