@@ -255,10 +255,11 @@ bool Search::isTextureCertain() {
 /// weighted, and prior agree.
 MeasuredInformation Search::measured() {
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
+    const ComparedBlocks compared{comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
+                                  comparison_.camera(level_), at_.exposure};
     MeasuredInformation image = respondingBy(
-        slope_, measuredInformation(comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
-                                    options_.photometric, options_.exposure, options_.modelErrors,
-                                    comparison_.camera(level_), comparison_.sinceModel(at_.T_c_w)));
+        slope_, measuredInformation(compared, options_.photometric, options_.exposure,
+                                    options_.modelErrors, comparison_.sinceModel(at_.T_c_w)));
     image.equations.information *= options_.informationScale;
     image.equations.rhs *= options_.informationScale;
     image.repeating /= options_.informationScale;

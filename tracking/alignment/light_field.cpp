@@ -31,15 +31,21 @@ void LightField::fit(const std::vector<ImageBlock>& blocks, double sigma) {
     cholesky.solveInPlace(constant_);
 }
 
-/// Variance of a pixel by the gains of the blocks, if the pixels of a block were independent.
+/// Variance of a pixel by the gains of the blocks about their mean, if the pixels of a block were
+/// independent.
 double LightField::noiseIn(const std::vector<ImageBlock>& blocks) const {
-    double sum = 0., count = 0.;
+    double sum = 0., squares = 0., weight = 0., count = 0.;
     for (const ImageBlock& block : blocks) {
-        if (!(block.AtA(6, 6) > 0.)) continue;
-        sum += std::pow(residual(block, Vector8::Zero())[6], 2) / block.AtA(6, 6);
+        const double known = block.AtA(6, 6);
+        if (!(known > 0.)) continue;
+        const double left = residual(block, Vector8::Zero())[6];
+        sum += left;
+        squares += left * left / known;
+        weight += known;
         count += 1.;
     }
-    return count > kTerms ? sum / (count - kTerms) : 0.;
+    const double free = count - kTerms - 1.;
+    return free > 0. ? std::max(0., squares - sum * sum / weight) / free : 0.;
 }
 
 /// Legendre's polynomials up to the second order, from -1 to 1 over the image.

@@ -10,7 +10,10 @@
 namespace photonav {
 namespace {
 
-using Eigen::MatrixXd;
+// Not on the heap.
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+using Draws = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, Eigen::Dynamic>;
 using Root = Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6>;
 
 /// Least eigenvalue of H, its diagonal scaled to ones, that sums in single precision can tell from
@@ -24,17 +27,18 @@ constexpr double kMostByChance = 2.;
 /// Differences of two estimates do not matter below this share of the covariance of the pose.
 constexpr double kNoDifference = 1e-3;
 
-/// H after eliminating the exposure, in coordinates y (x = V y) of the directions that the image
-/// observes.
+/// H with the prior of the exposure, which is eliminated, in coordinates y (x = V y) of the
+/// directions that the image observes.
 struct Observed {
     Eigen::Matrix<double, 8, 6> E =
-        Eigen::Matrix<double, 8, 6>::Identity();  ///< x -> (x, exposure)
-    MatrixXd V;                                   ///< columns: directions observed
-    MatrixXd solve;                               ///< H^-1: b -> y, for b of size 6
-    MatrixXd toY;                                 ///< y of x, for x = V y
-    Root root;                                    ///< L: L L^T is the inverse of H
-    Eigen::VectorXd scale;                        ///< y = diag(scale) L^T b, for b of size 8
-    MatrixXd open;                             ///< columns: directions not observed, of unit length
+        Eigen::Matrix<double, 8, 6>::Identity();                ///< x -> (x, exposure)
+    Eigen::Matrix2d exposureInverse = Eigen::Matrix2d::Zero();  ///< of H's block
+    Square V;                                                   ///< columns: directions observed
+    Square solve;                                               ///< H^-1: b -> y, for b of size 6
+    Square toY;                                                 ///< y of x, for x = V y
+    Root root;    ///< L: L L^T is the inverse of H, without exposureInverse
+    Few scale;    ///< y = diag(scale) L^T b, for b of size 8
+    Square open;  ///< columns: directions not observed, of unit length
     Matrix8 scatterOfPrior = Matrix8::Zero();  ///< the exposure is as wrong as its prior says
 
     Observed(Matrix8 H, const PhotometricOptions& photometric,
@@ -45,7 +49,8 @@ struct Observed {
             H.diagonal().tail<2>() +=
                 noise * prior->information().cwiseMax(Eigen::Vector2d::Constant(most));
             scatterOfPrior.diagonal().tail<2>() = noise * noise * prior->information();
-            E.bottomRows<2>() = -H.bottomRightCorner<2, 2>().inverse() * H.bottomLeftCorner<2, 6>();
+            exposureInverse = H.bottomRightCorner<2, 2>().inverse();
+            E.bottomRows<2>() = -exposureInverse * H.bottomLeftCorner<2, 6>();
         }
         const Matrix6 pose = E.transpose() * H * E;
         const Vector6 unit = pose.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
@@ -58,33 +63,40 @@ struct Observed {
         root = E * V * scale.asDiagonal();
         open = (unit.asDiagonal() * vectors.leftCols(missing)).colwise().normalized();
     }
+
+    Matrix8 inverse() const {
+        Matrix8 result = root * root.transpose();
+        result.bottomRightCorner<2, 2>() += exposureInverse;
+        return result;
+    }
 };
 
-/// The minimum of the image alone, the light field eliminated.
+/// The minimum of the image alone with the prior of the exposure, the light field eliminated.
 struct Minimum {
     LightField light;
     std::vector<ImageBlock> blocks;  ///< without the field
     Matrix8 H;
-    Vector8 gradient;
     Observed seen;
-    Vector8 x;  ///< the step of the pose to the minimum, and of the exposure by the pose
+    Vector8 x;  ///< the step to the minimum
 };
 
-Minimum minimumOf(const std::vector<ImageBlock>& whole, const PhotometricOptions& photometric,
-                  const std::optional<ExposurePrior>& prior, const ModelErrors& errors,
-                  const Camera& camera) {
+Minimum minimumOf(const ComparedBlocks& image, const PhotometricOptions& photometric,
+                  const std::optional<ExposurePrior>& prior, const ModelErrors& errors) {
     const double noise = photometric.sigma * photometric.sigma / photometric.scale;
-    const LightField light(whole, camera, errors.light, noise);
-    std::vector<ImageBlock> blocks = light.eliminatedFrom(whole);
+    const LightField light(image.blocks, image.camera, errors.light, noise);
+    std::vector<ImageBlock> blocks = light.eliminatedFrom(image.blocks);
     Matrix8 H = light.priorAtA();
     Vector8 gradient = light.priorAtr();
     for (const ImageBlock& block : blocks) {
         H += block.AtA;
         gradient += block.Atr;
     }
+    if (prior) {
+        const Eigen::Vector2d difference = ExposurePrior::difference(image.exposure);
+        gradient.tail<2>() -= noise * prior->information().cwiseProduct(difference);
+    }
     const Observed seen(H, photometric, prior);
-    const Vector8 x = seen.root * (seen.root.transpose() * gradient);
-    return {light, std::move(blocks), H, gradient, seen, x};
+    return {light, std::move(blocks), H, seen, seen.inverse() * gradient};
 }
 
 /// Share of the information about a direction from which on one block counts as its only source. At
@@ -93,14 +105,14 @@ constexpr double kOneBlock = 0.9;
 
 /// Covariance of directions in which one block is the only source, as of directions that are not
 /// observed, in y / Observed::scale.
-MatrixXd openByOneBlock(const Minimum& minimum) {
+Square openByOneBlock(const Minimum& minimum) {
     const Observed& seen = minimum.seen;
     const Matrix8 inverse = seen.root * seen.root.transpose();
-    MatrixXd covariance = MatrixXd::Zero(seen.root.cols(), seen.root.cols());
+    Square covariance = Square::Zero(seen.root.cols(), seen.root.cols());
     for (const ImageBlock& block : minimum.blocks) {
         if (block.AtA.cwiseProduct(inverse).sum() < kOneBlock) continue;  // trace of its share
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> share(seen.root.transpose() * block.AtA *
-                                                            seen.root);
+        const Eigen::SelfAdjointEigenSolver<Square> share(seen.root.transpose() * block.AtA *
+                                                          seen.root);
         for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
             if (share.eigenvalues()[i] < kOneBlock) continue;
             const auto direction = share.eigenvectors().col(i);
@@ -114,20 +126,18 @@ MatrixXd openByOneBlock(const Minimum& minimum) {
 /// Columns: H^-1 s_b with s_b = (1 - A_b H^-1)^-1 (g_b - A_b x), in y / Observed::scale, in which H
 /// is the identity: how much it changes without a block. With H^-1 = L L^T it is
 /// L (1 - L^T A_b L)^-1 L^T (...), which is symmetric and smaller.
-MatrixXd changesWithout(const Minimum& minimum) {
+Draws changesWithout(const Minimum& minimum) {
     const std::vector<ImageBlock>& blocks = minimum.blocks;
     const Observed& seen = minimum.seen;
-    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-    using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;  // not on the heap
     const Eigen::Index size = seen.root.cols();
-    MatrixXd changes(size, static_cast<Eigen::Index>(blocks.size()));
+    Draws changes(size, static_cast<Eigen::Index>(blocks.size()));
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         const Root weighted = blocks[b].AtA.lazyProduct(seen.root);
-        const Small share = seen.root.transpose().lazyProduct(weighted);
-        const Small rest = (1. + kOpen) * Small::Identity(size, size) - share;
+        const Square share = seen.root.transpose().lazyProduct(weighted);
+        const Square rest = (1. + kOpen) * Square::Identity(size, size) - share;
         const Vector8 gradient = blocks[b].Atr - blocks[b].AtA * minimum.x;
         const Few seenGradient = seen.root.transpose().lazyProduct(gradient);
-        const Eigen::LLT<Small> cholesky(rest);
+        const Eigen::LLT<Square> cholesky(rest);
         // A block with nearly all of the information, summed in single precision, is not definite.
         const bool isDefinite = cholesky.info() == Eigen::Success;
         changes.col(static_cast<Eigen::Index>(b)) =
@@ -142,11 +152,11 @@ MatrixXd changesWithout(const Minimum& minimum) {
 /// by n / (n - d - 1), with the number n of columns that count. Below n = 2 (d + 1), where this
 /// diverges, it is filled up with a covariance of the same mean that is equal in all directions.
 /// @param draws in coordinates in which they are expected to scatter equally in all directions
-MatrixXd covarianceOf(const MatrixXd& draws) {
-    const MatrixXd covariance = draws * draws.transpose();
+Square covarianceOf(const Draws& draws) {
+    const Square covariance = draws.lazyProduct(draws.transpose());
     const auto d = static_cast<double>(draws.rows());
-    const MatrixXd equal = covariance.trace() / d * MatrixXd::Identity(draws.rows(), draws.rows());
-    const MatrixXd solved = (covariance + kOpen * equal).ldlt().solve(draws);
+    const Square equal = covariance.trace() / d * Square::Identity(draws.rows(), draws.rows());
+    const Draws solved = (covariance + kOpen * equal).ldlt().solve(draws);
     const auto shares = draws.cwiseProduct(solved).colwise().sum().eval();
     if (!(shares.sum() > 0.)) return covariance;  // an exact fit
     const double n = shares.sum() * shares.sum() / shares.squaredNorm();
@@ -157,7 +167,9 @@ MatrixXd covarianceOf(const MatrixXd& draws) {
 /// The blocks with weights by which each one with more texture than noise counts alike, whatever
 /// its contrast. The weights' mean over the pixels is 1.
 /// @param noise variance of a pixel [grey value^2]
-std::vector<ImageBlock> weightedByArea(std::vector<ImageBlock> blocks, double focal, double noise) {
+ComparedBlocks weightedByArea(ComparedBlocks image, double noise) {
+    const double focal = image.camera.fx();
+    std::vector<ImageBlock>& blocks = image.blocks;
     std::vector<double> weights;
     double sum = 0., pixels = 0.;
     for (const ImageBlock& block : blocks) {
@@ -171,7 +183,7 @@ std::vector<ImageBlock> weightedByArea(std::vector<ImageBlock> blocks, double fo
         blocks[b].AtA *= weights[b] * pixels / sum;
         blocks[b].Atr *= weights[b] * pixels / sum;
     }
-    return blocks;
+    return image;
 }
 
 /// Covariance by the difference d of two estimates of the same pose, by weights of the contrast and
@@ -183,18 +195,17 @@ std::vector<ImageBlock> weightedByArea(std::vector<ImageBlock> blocks, double fo
 /// @param byContrast,byArea the minima of the two weights
 /// @param changes changesWithout() of the first one
 /// @param covariance of the pose; it and the result refer to y / Observed::scale
-MatrixXd disagreement(const Minimum& byContrast, const Minimum& byArea, const MatrixXd& changes,
-                      const MatrixXd& covariance) {
+Square disagreement(const Minimum& byContrast, const Minimum& byArea, const Draws& changes,
+                    const Square& covariance) {
     const auto size = covariance.rows();
     const Observed& seen = byContrast.seen;
-    if (byArea.seen.V.cols() < size) return MatrixXd::Zero(size, size);
-    const MatrixXd toScaled = seen.scale.cwiseInverse().asDiagonal() * seen.toY;
-    const Eigen::VectorXd d = toScaled * (byArea.x - byContrast.x).head<6>();
-    const MatrixXd draws =
-        toScaled * byArea.seen.root.topRows<6>() * changesWithout(byArea) - changes;
-    const MatrixXd chance = covarianceOf(draws) + kNoDifference * covariance;
+    if (byArea.seen.V.cols() < size) return Square::Zero(size, size);
+    const Square toScaled = seen.scale.cwiseInverse().asDiagonal() * seen.toY;
+    const Few d = toScaled * (byArea.x - byContrast.x).head<6>();
+    const Draws draws = toScaled * byArea.seen.root.topRows<6>() * changesWithout(byArea) - changes;
+    const Square chance = covarianceOf(draws) + kNoDifference * covariance;
     const double ratio = d.dot(chance.ldlt().solve(d)) / static_cast<double>(size);
-    if (!(ratio > kMostByChance)) return MatrixXd::Zero(size, size);
+    if (!(ratio > kMostByChance)) return Square::Zero(size, size);
     return (1. - kMostByChance / ratio) * (d * d.transpose() + chance);
 }
 
@@ -208,40 +219,33 @@ Matrix6 combined(const Matrix6& a, const Matrix6& b, const Choose& choose) {
 
 }  // namespace
 
-MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
+MeasuredInformation measuredInformation(const ComparedBlocks& image,
                                         const PhotometricOptions& photometric,
                                         const std::optional<ExposurePrior>& prior,
-                                        const ModelErrors& errors, const Camera& camera,
-                                        const Pose& toModel) {
-    const Minimum byContrast = minimumOf(blocks, photometric, prior, errors, camera);
+                                        const ModelErrors& errors, const Pose& toModel) {
+    const Minimum byContrast = minimumOf(image, photometric, prior, errors);
     const Observed& seen = byContrast.seen;
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
     if (seen.V.cols() == 0) return result;
 
-    const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
+    const auto covariance = [&](const Matrix8& scatter) -> Square {  // of y
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
-    const MatrixXd repeating =
-        covariance(
-            scatterOfRepeatingErrors(blocks, byContrast.light, byContrast.x, errors, camera)) +
+    const Square repeating =
+        covariance(scatterOfRepeatingErrors(image.blocks, byContrast.light, byContrast.x, errors,
+                                            image.camera)) +
         seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
-    const MatrixXd changes = changesWithout(byContrast);
-    const MatrixXd scatter = seen.scale.asDiagonal() *
-                             (covarianceOf(changes) + openByOneBlock(byContrast)) *
-                             seen.scale.asDiagonal();
-    const MatrixXd whole =
-        repeating + scatter +
-        covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * byContrast.H);
+    const Draws changes = changesWithout(byContrast);
+    const Square scatter = seen.scale.asDiagonal() *
+                           (covarianceOf(changes) + openByOneBlock(byContrast)) *
+                           seen.scale.asDiagonal();
+    const Square whole = repeating + scatter +
+                         covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * byContrast.H);
     const double noise = std::max(std::pow(photometric.sigma, 2), kPixelNoise * kPixelNoise);
-    Minimum byArea =
-        minimumOf(weightedByArea(blocks, camera.fx(), noise), photometric, prior, errors, camera);
-    if (prior) {  // by these weights the exposure is another one
-        byArea.x.tail<2>() +=
-            byArea.H.bottomRightCorner<2, 2>().ldlt().solve(byArea.gradient.tail<2>());
-    }
-    const Eigen::VectorXd unit = seen.scale.cwiseInverse();
-    const MatrixXd disagreeing =
+    const Minimum byArea = minimumOf(weightedByArea(image, noise), photometric, prior, errors);
+    const Few unit = seen.scale.cwiseInverse();
+    const Square disagreeing =
         seen.scale.asDiagonal() *
         disagreement(byContrast, byArea, changes, unit.asDiagonal() * whole * unit.asDiagonal()) *
         seen.scale.asDiagonal();

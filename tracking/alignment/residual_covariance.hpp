@@ -10,6 +10,13 @@
 
 namespace photonav {
 
+/// The blocks of an image that was compared with a model.
+struct ComparedBlocks {
+    std::vector<ImageBlock> blocks;
+    Camera camera;      ///< of the level at which they were compared
+    Exposure exposure;  ///< at which they were compared
+};
+
 /// The information of an image about the pose: left perturbation, camera frame.
 struct MeasuredInformation {
     PoseEquations
@@ -34,13 +41,11 @@ struct MeasuredInformation {
 /// that repeats.
 /// @param prior of the exposure; none: the exposure is fixed
 /// @param errors used in C_repeating
-/// @param camera camera of the level at which the blocks were compared
 /// @param toModel motion T_c_k since the keyframe that is the model; identity for maps
-MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
+MeasuredInformation measuredInformation(const ComparedBlocks& image,
                                         const PhotometricOptions& photometric,
                                         const std::optional<ExposurePrior>& prior,
-                                        const ModelErrors& errors, const Camera& camera,
-                                        const Pose& toModel);
+                                        const ModelErrors& errors, const Pose& toModel);
 
 /// Corrects the information by the slope M of measuredSlope(): the image responds to a displacement
 /// x of the camera as J does to M x.
