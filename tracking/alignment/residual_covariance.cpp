@@ -41,10 +41,9 @@ struct Observed {
     Square open;  ///< columns: directions not observed, of unit length
     Matrix8 scatterOfPrior = Matrix8::Zero();  ///< the exposure is as wrong as its prior says
 
-    Observed(Matrix8 H, const PhotometricOptions& photometric,
-             const std::optional<ExposurePrior>& prior) {
+    /// @param noise variance of a pixel, by which the prior weighs [grey value^2]
+    Observed(Matrix8 H, const std::optional<ExposurePrior>& prior, double noise) {
         if (prior) {
-            const double noise = photometric.sigma * photometric.sigma / photometric.scale;
             const double most = 1. / (kExposureSigma * kExposureSigma);
             H.diagonal().tail<2>() +=
                 noise * prior->information().cwiseMax(Eigen::Vector2d::Constant(most));
@@ -95,7 +94,7 @@ Minimum minimumOf(const ComparedBlocks& image, const PhotometricOptions& photome
         const Eigen::Vector2d difference = ExposurePrior::difference(image.exposure);
         gradient.tail<2>() -= noise * prior->information().cwiseProduct(difference);
     }
-    const Observed seen(H, photometric, prior);
+    const Observed seen(H, prior, noise);
     return {light, std::move(blocks), H, seen, seen.inverse() * gradient};
 }
 

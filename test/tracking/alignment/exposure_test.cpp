@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "alignment/dense_aligner.hpp"
+#include "alignment/residual_covariance.hpp"
+#include "estimation/calibration.hpp"
 #include "tracking/alignment/room_images.hpp"
 
 namespace photonav {
@@ -82,6 +84,31 @@ TEST(PoseEquations, TheStepOfTheExposureEndsInTheMinimumOfTheCost) {
         const double down = cost({best.gain - along[0], best.offset - along[1]});
         EXPECT_NEAR((up - down) / (up + down - 2. * cost(best)), 0., 0.01);
     }
+}
+
+/// The minimum is where it is, with whatever gain and offset the image was compared.
+TEST(Exposure, AtWhichImagesAreComparedDoesNotChangeTheirInformation) {
+    View view;
+    room().render(camera(), kPose, view);
+    ViewComparison compare(camera(), {});
+    compare(view, observe(room(), kPose, 0.02), {}, {});
+    const AlignmentOptions options = realCameraOptions();
+    ComparedBlocks image{compare.blocks({}, {}), camera(), {}};
+    const auto measured = [&] {
+        return measuredInformation(image, options.photometric, options.exposure,
+                                   options.modelErrors, Pose::Identity());
+    };
+    const MeasuredInformation before = measured();
+    image.exposure = {1.1, -0.01};
+    for (ImageBlock& block : image.blocks) {
+        block.Atr -= block.AtA.rightCols<2>() * ExposurePrior::difference(image.exposure);
+    }
+    const MeasuredInformation after = measured();
+    const Vector6 x = before.equations.information.ldlt().solve(before.equations.rhs);
+    const Vector6 change = after.equations.information.ldlt().solve(after.equations.rhs) - x;
+    EXPECT_LT(change.dot(before.equations.information * change), 1e-5);
+    EXPECT_TRUE(after.equations.information.isApprox(before.equations.information, 1e-3));
+    EXPECT_TRUE(after.repeating.isApprox(before.repeating, 1e-3));
 }
 
 /// Images that say as much about the exposure as the prior does.

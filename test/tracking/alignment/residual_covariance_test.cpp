@@ -244,32 +244,6 @@ TEST(ResidualCovariance, AnUnusedHalfOfTheImageLeavesTheFieldsAsTheyAre) {
     EXPECT_LT((repeating() - withoutCorner).norm(), 1e-6 * withoutCorner.norm());
 }
 
-/// The minimum is where it is, with whatever gain and offset the image was compared.
-TEST(ResidualCovariance, DoesNotDependOnTheExposureOfTheComparison) {
-    const Camera camera = makeCamera(188, 120, 1.2);
-    const View view = test::photographed(room(), camera, lookFrom({1.6, 3., 1.6}, kOblique, 0.1));
-    std::mt19937_64 random(3);
-    ViewComparison compare(camera, {});
-    compare(view, test::noisy(view.intensity, 0.02, random), {}, {});
-    const AlignmentOptions options = realCameraOptions();
-    ComparedBlocks image{compare.blocks({}, {}), camera, {}};
-    const auto measured = [&] {
-        return measuredInformation(image, options.photometric, options.exposure,
-                                   options.modelErrors, Pose::Identity());
-    };
-    const MeasuredInformation before = measured();
-    image.exposure = {1.1, -0.01};
-    for (ImageBlock& block : image.blocks) {
-        block.Atr -= block.AtA.rightCols<2>() * ExposurePrior::difference(image.exposure);
-    }
-    const MeasuredInformation after = measured();
-    const Vector6 x = before.equations.information.ldlt().solve(before.equations.rhs);
-    const Vector6 change = after.equations.information.ldlt().solve(after.equations.rhs) - x;
-    EXPECT_LT(change.dot(before.equations.information * change), 1e-5);
-    EXPECT_TRUE(after.equations.information.isApprox(before.equations.information, 1e-3));
-    EXPECT_TRUE(after.repeating.isApprox(before.repeating, 1e-3));
-}
-
 /// A poster of 20 cm on white: the residuals of its few blocks span less than six dimensions.
 TEST(ResidualCovariance, FewBlocksDoNotMakeItSingular) {
     const Camera camera = makeCamera(94, 60, 1.2);
